@@ -1,0 +1,186 @@
+#include "meltscope/mpm/nodes.hpp"
+
+#include "meltscope/mpm/group_stencils.hpp"
+
+#include <cmath>
+
+namespace meltscope {
+namespace {
+
+/// Nodes that hold more than one material.
+std::vector<std::int64_t> mixed_nodes(const Grid& grid, const std::vector<Field>& material_mass) {
+    std::vector<std::int64_t> mixed;
+    for (std::int64_t i = 0; i < grid.size; ++i) {
+        int present = 0;
+        for (const Field& mass : material_mass)
+            present += mass[i] > 0.0;
+        if (present > 1)
+            mixed.push_back(i);
+    }
+    return mixed;
+}
+
+} // namespace
+
+double mixture_temperature(const std::vector<EquationOfState>& materials, const std::vector<Field>& material_mass,
+                           std::int64_t node, double total) {
+    double low = 1e300, high = -1e300;
+    double mass = 0.0;
+    for (std::size_t a = 0; a < materials.size(); ++a)
+        mass += material_mass[a][node];
+    for (std::size_t a = 0; a < materials.size(); ++a)
+        if (material_mass[a][node] > 0.0) {
+            const double alone = materials[a].temperature(total / mass);
+            low = std::min(low, alone);
+            high = std::max(high, alone);
+        }
+    // Newton on a monotone function, bracketed so that latent heat cannot throw it off.
+    double t = 0.5 * (low + high);
+    for (int iteration = 0; iteration < 100; ++iteration) {
+        double energy = -total, capacity = 0.0;
+        for (std::size_t a = 0; a < materials.size(); ++a) {
+            energy += material_mass[a][node] * materials[a].energy(t);
+            capacity += material_mass[a][node] * materials[a].heat_capacity(t);
+        }
+        (energy > 0.0 ? high : low) = t;
+        double next = t - energy / capacity;
+        if (!(next >= low && next <= high))
+            next = 0.5 * (low + high);
+        if (std::abs(next - t) <= 1e-13 * std::abs(t))
+            return next;
+        t = next;
+    }
+    return t;
+}
+
+void scatter_to_nodes(const Grid& grid, const Particles& particles, const Field& value, Field& field) {
+    const LatticeStencils lattices;
+    for_each_block(particles.layout, [&](const LaneBlock& block) {
+        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
+            const LaneGroup& group = particles.layout.groups[g];
+            NodeSums sums;
+            for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+                std::array<Lanes, std::decay_t<decltype(stencil)>::points> s;
+                for (std::size_t p = 0; p < s.size(); ++p)
+                    s[p] = load(&value[first + p * lane_count]);
+                stencil.scatter_value(s, sums);
+            });
+            sums.add_to(field.data(), group.corner, grid.stride_y, grid.stride_z);
+        }
+    });
+}
+
+Nodes make_nodes(const Grid& grid, const Particles& particles, int materials, const Boundary& boundary) {
+    Nodes nodes;
+    for (Field* field : {&nodes.mass, &nodes.mass_energy, &nodes.temperature, &nodes.increment})
+        field->assign(grid.size, 0.0);
+    nodes.energy.assign(materials, Field(grid.size, 0.0));
+    nodes.new_energy.assign(materials, Field(grid.size, 0.0));
+    nodes.near_fixed_faces = nodes_near_fixed_faces(grid, boundary);
+
+    scatter_to_nodes(grid, particles, particles.mass, nodes.mass);
+    if (!nodes.near_fixed_faces.empty()) {
+        nodes.inertia = nodes.mass;
+        fold_ghosts(grid, boundary, AtFixedFaces::even, nodes.inertia);
+    }
+    fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.mass);
+
+    if (materials > 1) {
+        for (int a = 0; a < materials; ++a) {
+            Field mass_of_a(particles.layout.size(), 0.0);
+            for (const LaneGroup& group : particles.layout.groups)
+                if (group.kind == a)
+                    for (std::int64_t at = group.first_slot * lane_count;
+                         at < (group.first_slot + group.slots) * lane_count; ++at)
+                        mass_of_a[at] = particles.mass[at];
+            nodes.material_mass.emplace_back(grid.size, 0.0);
+            scatter_to_nodes(grid, particles, mass_of_a, nodes.material_mass.back());
+            fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.material_mass.back());
+        }
+        nodes.mixed = mixed_nodes(grid, nodes.material_mass);
+    }
+    return nodes;
+}
+
+void particles_to_grid(const Grid& grid, const Particles& particles, const std::vector<Field>* gradient_of,
+                       Nodes& nodes) {
+    const LatticeStencils lattices;
+    std::fill(nodes.mass_energy.begin(), nodes.mass_energy.end(), 0.0);
+    for_each_block(particles.layout, [&](const LaneBlock& block) {
+        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
+            const LaneGroup& group = particles.layout.groups[g];
+            NodeSums sums;
+            for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+                using Stencil = std::decay_t<decltype(stencil)>;
+                std::array<Lanes, Stencil::points> energy;
+                for (int p = 0; p < Stencil::points; ++p)
+                    energy[p] = load(&particles.mass[first + p * lane_count]) *
+                                load(&particles.specific_energy[first + p * lane_count]);
+                if (!gradient_of)
+                    return stencil.scatter_value(energy, sums);
+                typename Stencil::Points gradient;
+                stencil.gather((*gradient_of)[group.kind].data() + group.corner, grid.stride_y, grid.stride_z,
+                               gradient);
+                for (int p = 0; p < Stencil::points; ++p) {
+                    const Lanes mass = load(&particles.mass[first + p * lane_count]);
+                    gradient.value[p] = energy[p];
+                    gradient.x[p] *= mass;
+                    gradient.y[p] *= mass;
+                    gradient.z[p] *= mass;
+                }
+                stencil.scatter_affine(gradient, sums);
+            });
+            sums.add_to(nodes.mass_energy.data(), group.corner, grid.stride_y, grid.stride_z);
+        }
+    });
+}
+
+void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
+                Nodes& nodes) {
+    fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.mass_energy);
+    const int count = int(materials.size());
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < grid.size; i += lane_count) {
+        const Lanes mass = load(&nodes.mass[i]);
+        const auto filled = mass > 0.0;
+        if (none_of(filled)) {
+            store(Lanes(0.0), &nodes.temperature[i]);
+            continue;
+        }
+        const Lanes energy = select(filled, load(&nodes.mass_energy[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
+        if (count == 1) {
+            store(energy, &nodes.energy[0][i]);
+            store(select(filled, materials[0].temperature(energy), Lanes(0.0)), &nodes.temperature[i]);
+            continue;
+        }
+        Lanes temperature(0.0);
+        for (int a = 0; a < count; ++a) {
+            const auto present = load(&nodes.material_mass[a][i]) > 0.0;
+            store(select(present, energy, Lanes(0.0)), &nodes.energy[a][i]);
+            where(present, temperature) = materials[a].temperature(energy);
+        }
+        store(temperature, &nodes.temperature[i]);
+    }
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i : nodes.mixed) {
+        const double t = mixture_temperature(materials, nodes.material_mass, i, nodes.mass_energy[i]);
+        nodes.temperature[i] = t;
+        for (int a = 0; a < count; ++a)
+            nodes.energy[a][i] = materials[a].energy(t);
+    }
+
+    mirror_ghosts(grid, boundary, nodes.temperature);
+    for (int a = 0; a < count; ++a)
+        mirror_ghosts(grid, boundary, nodes.energy[a]);
+    // An odd continuation about the face's temperature: what is linear through the face stays linear.
+    for (int f = 0; f < 6; ++f)
+        if (boundary[f].fixes_temperature())
+            for_each_face_node(grid, f, [&](std::int64_t ghost, std::int64_t face, std::int64_t mirror) {
+                if (nodes.inertia[mirror] > 0.0) {
+                    nodes.temperature[face] = boundary[f].temperature;
+                    nodes.temperature[ghost] = 2.0 * boundary[f].temperature - nodes.temperature[mirror];
+                }
+            });
+}
+
+} // namespace meltscope

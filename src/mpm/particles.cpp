@@ -1,0 +1,70 @@
+#include "meltscope/mpm/particles.hpp"
+
+namespace meltscope {
+
+Particles make_particles(const Grid& grid, ParticleList list, int lattice) {
+    Particles particles;
+    particles.layout = make_lane_layout(grid, list.position, list.material, lattice);
+    particles.lattice = lattice;
+    const std::int64_t size = particles.layout.size();
+    for (Field* field : {&particles.offset_x, &particles.offset_y, &particles.offset_z, &particles.mass,
+                         &particles.volume, &particles.specific_energy})
+        field->assign(size, 0.0);
+#pragma omp parallel for schedule(static)
+    for (std::int64_t q = 0; q < list.size(); ++q) {
+        const std::int64_t at = particles.layout.place[q];
+        const BinPlace place = bin_place(grid, list.position[q]);
+        particles.offset_x[at] = place.offset[0];
+        particles.offset_y[at] = place.offset[1];
+        particles.offset_z[at] = place.offset[2];
+        particles.mass[at] = list.mass[q];
+        particles.volume[at] = list.volume[q];
+        particles.specific_energy[at] = list.specific_energy[q];
+    }
+    particles.position = std::move(list.position);
+    particles.id = std::move(list.id);
+    particles.material = std::move(list.material);
+    return particles;
+}
+
+ParticleList list_particles(const Particles& particles) {
+    ParticleList list;
+    list.position = particles.position;
+    list.id = particles.id;
+    list.material = particles.material;
+    const std::int64_t count = particles.count();
+    list.mass.resize(count);
+    list.volume.resize(count);
+    list.specific_energy.resize(count);
+#pragma omp parallel for schedule(static)
+    for (std::int64_t q = 0; q < count; ++q) {
+        const std::int64_t at = particles.layout.place[q];
+        list.mass[q] = particles.mass[at];
+        list.volume[q] = particles.volume[at];
+        list.specific_energy[q] = particles.specific_energy[at];
+    }
+    return list;
+}
+
+double total_energy(const Particles& particles) {
+    // One partial sum a block of the layout, then the blocks in order: the same for any number of threads.
+    const auto& blocks = particles.layout.blocks;
+    std::vector<double> partial(blocks.size());
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        if (blocks[b].first_group == blocks[b].last_group)
+            continue;
+        const LaneGroup& first = particles.layout.groups[blocks[b].first_group];
+        const LaneGroup& last = particles.layout.groups[blocks[b].last_group - 1];
+        Lanes sum(0.0);
+        for (std::int64_t slot = first.first_slot; slot < last.first_slot + last.slots; ++slot)
+            sum += load(&particles.mass[slot * lane_count]) * load(&particles.specific_energy[slot * lane_count]);
+        partial[b] = reduce(sum);
+    }
+    double total = 0.0;
+    for (const double sum : partial)
+        total += sum;
+    return total;
+}
+
+} // namespace meltscope

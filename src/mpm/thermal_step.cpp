@@ -1,0 +1,176 @@
+#include "meltscope/mpm/thermal_step.hpp"
+
+#include "meltscope/mpm/group_stencils.hpp"
+
+namespace meltscope {
+namespace {
+
+/// e(T_i) of the one material, into the storage of e*, which step 6 fills later.
+const Field& energy_of_temperature(const EquationOfState& eos, Nodes& nodes) {
+    Field& energy = nodes.new_energy[0];
+#pragma omp parallel for schedule(static)
+    for (std::size_t i = 0; i < energy.size(); i += lane_count)
+        store(eos.energy(load(&nodes.temperature[i])), &energy[i]);
+    return energy;
+}
+
+/// e* on and beyond faces of fixed temperature, for one material.
+void fix_face_energies(const Grid& grid, const Boundary& boundary, const EquationOfState& eos, const Field& inertia,
+                       Field& new_energy) {
+    for (int f = 0; f < 6; ++f)
+        if (boundary[f].fixes_temperature()) {
+            const double wall = boundary[f].temperature;
+            const double wall_energy = eos.energy(wall);
+            for_each_face_node(grid, f, [&](std::int64_t ghost, std::int64_t face, std::int64_t mirror) {
+                if (inertia[mirror] > 0.0) {
+                    new_energy[face] = wall_energy;
+                    new_energy[ghost] = eos.energy(2.0 * wall - eos.temperature(new_energy[mirror]));
+                }
+            });
+        }
+}
+
+} // namespace
+
+void diffuse(const Grid& grid, const Particles& particles, const std::vector<EquationOfState>& materials,
+             const StepOptions& options, double dt, Nodes& nodes) {
+    const LatticeStencils lattices;
+    const double* temperature = nodes.temperature.data();
+    const double* energy = options.energy_gradient ? energy_of_temperature(materials[0], nodes).data() : nullptr;
+    const double scale = -dt / (grid.dx * grid.dx); // gradients come per cell, one of T and one of N
+    for_each_block(particles.layout, [&](const LaneBlock& block) {
+        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
+            const LaneGroup& group = particles.layout.groups[g];
+            const EquationOfState& eos = materials[group.kind];
+            NodeSums sums;
+            for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+                using Stencil = std::decay_t<decltype(stencil)>;
+                typename Stencil::Points flux; // first grad T, then F
+                stencil.gather(temperature + group.corner, grid.stride_y, grid.stride_z, flux);
+                std::array<Lanes, Stencil::points> factor;
+                for (int p = 0; p < Stencil::points; ++p)
+                    factor[p] = scale * load(&particles.volume[first + p * lane_count]) *
+                                eos.conductivity(flux.value[p]);
+                if (energy) {
+                    for (int p = 0; p < Stencil::points; ++p)
+                        factor[p] /= eos.heat_capacity(flux.value[p]);
+                    stencil.gather(energy + group.corner, grid.stride_y, grid.stride_z, flux);
+                }
+                for (int p = 0; p < Stencil::points; ++p) {
+                    flux.x[p] *= factor[p];
+                    flux.y[p] *= factor[p];
+                    flux.z[p] *= factor[p];
+                }
+                stencil.scatter_gradient(flux, sums);
+            });
+            sums.add_to(nodes.increment.data(), group.corner, grid.stride_y, grid.stride_z);
+        }
+    });
+}
+
+double update_grid_energy(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
+                          const StepOptions& options, Nodes& nodes) {
+    const int count = int(materials.size());
+    double conducted = 0.0; // J
+    for (const std::int64_t i : nodes.near_fixed_faces)
+        conducted -= nodes.increment[i];
+
+    fold_ghosts(grid, boundary, AtFixedFaces::odd, nodes.increment);
+    const Field& inertia = nodes.inertia.empty() ? nodes.mass : nodes.inertia;
+
+    // e_i* = e_i + D_i / m_i
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < grid.size; i += lane_count) {
+        const Lanes mass = load(&inertia[i]);
+        const auto filled = mass > 0.0;
+        const Lanes rise = select(filled, load(&nodes.increment[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
+        for (int a = 0; a < count; ++a)
+            store(load(&nodes.energy[a][i]) + rise, &nodes.new_energy[a][i]);
+    }
+#pragma omp parallel for schedule(static)
+    for (const std::int64_t i : nodes.mixed) {
+        const double total = nodes.mass_energy[i] + nodes.increment[i] * nodes.mass[i] / inertia[i];
+        const double t = mixture_temperature(materials, nodes.material_mass, i, total);
+        for (int a = 0; a < count; ++a)
+            nodes.new_energy[a][i] = materials[a].energy(t);
+    }
+    for (int a = 0; a < count; ++a) {
+        mirror_ghosts(grid, boundary, nodes.new_energy[a]);
+        if (!nodes.near_fixed_faces.empty())
+            fix_face_energies(grid, boundary, materials[a], inertia, nodes.new_energy[a]);
+    }
+
+    // What the particles will gain beyond D_i near these faces came through them.
+    for (const std::int64_t i : nodes.near_fixed_faces)
+        for (int a = 0; a < count; ++a) {
+            const double mass = nodes.several_materials() ? nodes.material_mass[a][i] : nodes.mass[i];
+            if (mass > 0.0)
+                conducted += mass * (nodes.new_energy[a][i] - nodes.energy[a][i]);
+        }
+
+    // The blend of step 7 needs sum_i N_ip (e_i* - (1 - b) e_i) only.
+    const double keep = 1.0 - options.blend;
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < grid.size; i += lane_count) {
+        for (int a = 0; a < count; ++a)
+            store(load(&nodes.new_energy[a][i]) - keep * load(&nodes.energy[a][i]), &nodes.energy[a][i]);
+        store(Lanes(0.0), &nodes.increment[i]);
+        store(Lanes(0.0), &nodes.mass_energy[i]);
+    }
+    return conducted;
+}
+
+void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Particles& particles, Nodes& nodes) {
+    const LatticeStencils lattices;
+    const double keep = 1.0 - options.blend;
+    for_each_block(particles.layout, [&](const LaneBlock& block) {
+        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
+            const LaneGroup& group = particles.layout.groups[g];
+            const double* change = nodes.energy[group.kind].data() + group.corner;
+            const double* new_energy = nodes.new_energy[group.kind].data() + group.corner;
+            NodeSums sums;
+            for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+                using Stencil = std::decay_t<decltype(stencil)>;
+                std::array<Lanes, Stencil::points> energy;
+                stencil.gather(change, grid.stride_y, grid.stride_z, energy);
+                for (int p = 0; p < Stencil::points; ++p) {
+                    double* e = &particles.specific_energy[first + p * lane_count];
+                    energy[p] += keep * load(e);
+                    store(energy[p], e);
+                    energy[p] *= load(&particles.mass[first + p * lane_count]);
+                }
+                if (!options.affine)
+                    return stencil.scatter_value(energy, sums);
+                typename Stencil::Points gradient;
+                stencil.gather(new_energy, grid.stride_y, grid.stride_z, gradient);
+                for (int p = 0; p < Stencil::points; ++p) {
+                    const Lanes mass = load(&particles.mass[first + p * lane_count]);
+                    gradient.value[p] = energy[p];
+                    gradient.x[p] *= mass;
+                    gradient.y[p] *= mass;
+                    gradient.z[p] *= mass;
+                }
+                stencil.scatter_affine(gradient, sums);
+            });
+            sums.add_to(nodes.mass_energy.data(), group.corner, grid.stride_y, grid.stride_z);
+        }
+    });
+}
+
+Field particle_temperatures(const Grid& grid, const Particles& particles, const Nodes& nodes) {
+    const LatticeStencils lattices;
+    Field temperature(particles.layout.size(), 0.0);
+#pragma omp parallel for schedule(static)
+    for (std::size_t g = 0; g < particles.layout.groups.size(); ++g) {
+        const LaneGroup& group = particles.layout.groups[g];
+        for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+            std::array<Lanes, std::decay_t<decltype(stencil)>::points> value;
+            stencil.gather(nodes.temperature.data() + group.corner, grid.stride_y, grid.stride_z, value);
+            for (std::size_t p = 0; p < value.size(); ++p)
+                store(value[p], &temperature[first + p * lane_count]);
+        });
+    }
+    return temperature;
+}
+
+} // namespace meltscope

@@ -1,0 +1,190 @@
+#include "viz/file_output.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+
+#include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLImageDataWriter.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <fmt/format.h>
+
+namespace meltscope::viz {
+
+namespace {
+
+constexpr std::array<const char*, 4> kinds{"surface", "pool", "particles", "grid"};
+
+vtkSmartPointer<vtkXMLWriter> make_writer(vtkDataSet* data) {
+    if (vtkImageData::SafeDownCast(data) != nullptr) {
+        return vtkSmartPointer<vtkXMLImageDataWriter>::New();
+    }
+    if (vtkUnstructuredGrid::SafeDownCast(data) != nullptr) {
+        return vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New();
+    }
+    return vtkSmartPointer<vtkXMLPolyDataWriter>::New();
+}
+
+template <class Wanted>
+vtkSmartPointer<vtkDataArray> converted(vtkDataArray* array) {
+    if (Wanted::SafeDownCast(array) != nullptr ||
+        (vtkFloatArray::SafeDownCast(array) == nullptr && vtkDoubleArray::SafeDownCast(array) == nullptr)) {
+        return array;
+    }
+    auto copy = vtkSmartPointer<Wanted>::New();
+    copy->DeepCopy(array);
+    copy->SetName(array->GetName());
+    return copy;
+}
+
+/// Brings every floating-point array, and points, to one precision; arrays that have it are not copied.
+template <class Wanted>
+void convert(vtkDataSet* data) {
+    vtkDataSetAttributes* attributes = data->GetPointData();
+    const std::string scalars =
+        attributes->GetScalars() != nullptr ? attributes->GetScalars()->GetName() : std::string();
+    for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
+        vtkDataArray* array = attributes->GetArray(i);
+        const bool is_normals = array == attributes->GetNormals();
+        const auto result = converted<Wanted>(array);
+        if (is_normals) {
+            attributes->SetNormals(result);
+        } else {
+            attributes->AddArray(result); // in the place of the array of the same name
+        }
+    }
+    if (!scalars.empty()) {
+        attributes->SetActiveScalars(scalars.c_str());
+    }
+    if (auto* points = vtkPointSet::SafeDownCast(data); points != nullptr && points->GetPoints() != nullptr) {
+        vtkNew<vtkPoints> result;
+        result->SetData(converted<Wanted>(points->GetPoints()->GetData()));
+        points->SetPoints(result);
+    }
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> as_unstructured(vtkPolyData* particles) {
+    auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    grid->SetPoints(particles->GetPoints());
+    grid->SetCells(VTK_VERTEX, particles->GetVerts());
+    grid->GetPointData()->ShallowCopy(particles->GetPointData());
+    return grid;
+}
+
+} // namespace
+
+void FileOutput::resume_at(double time) {
+    next_index_ = 0;
+    for (const char* kind : kinds) {
+        const auto path = options_.run_dir / fmt::format("{}.pvd", kind);
+        if (!std::filesystem::exists(path)) {
+            continue;
+        }
+        PvdCollection collection(path);
+        collection.load();
+        collection.drop_from(time);
+        for (const PvdCollection::Entry& entry : collection.entries()) {
+            const std::string stem = std::filesystem::path(entry.file).stem().string();
+            int index = 0;
+            if (std::sscanf(stem.c_str() + std::min(stem.size(), std::strlen(kind) + 1), "%d", &index) == 1) {
+                next_index_ = std::max(next_index_, index + 1);
+            }
+        }
+        collections_.insert_or_assign(kind, std::move(collection));
+    }
+}
+
+int FileOutput::write(const Instant& instant) {
+    const Snapshot& snapshot = *instant.snapshot;
+    int files = 0;
+    if (options_.surface) {
+        write_one("surface", "vtp", instant.free_surface, snapshot.time);
+        ++files;
+    }
+    if (options_.pool) {
+        write_one("pool", "vtp", join_pool(instant.pool), snapshot.time);
+        ++files;
+    }
+    if (options_.particles && !snapshot.particles.id.empty()) {
+        const auto particles = make_particles(snapshot.particles);
+        if (options_.particles_as_vtu) {
+            write_one("particles", "vtu", as_unstructured(particles), snapshot.time);
+        } else {
+            write_one("particles", "vtp", particles, snapshot.time);
+        }
+        ++files;
+    }
+    if (options_.grid) {
+        write_one("grid", "vti", make_grid(snapshot), snapshot.time);
+        ++files;
+    }
+    ++next_index_;
+    return files;
+}
+
+void FileOutput::write_one(const std::string& kind, const char* extension, vtkDataSet* data, double time) {
+    const std::filesystem::path folder = options_.run_dir / kind;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+        throw VizError(fmt::format("cannot make the folder {}: {}", folder.string(), error.message()));
+    }
+    const auto output = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
+    output->ShallowCopy(data);
+    if (options_.precision == Precision::float32) {
+        convert<vtkFloatArray>(output);
+    } else {
+        convert<vtkDoubleArray>(output);
+    }
+    vtkNew<vtkDoubleArray> time_value;
+    time_value->SetName("TimeValue");
+    time_value->InsertNextValue(time);
+    output->GetFieldData()->AddArray(time_value);
+
+    const std::string name = fmt::format("{}_{:06}.{}", kind, next_index_, extension);
+    const std::string temporary = (folder / (name + ".part")).string();
+    const auto writer = make_writer(output);
+    writer->SetFileName(temporary.c_str());
+    writer->SetInputDataObject(output);
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOff();
+    switch (options_.compression) {
+    case Compression::none:
+        writer->SetCompressorTypeToNone();
+        break;
+    case Compression::lz4:
+        writer->SetCompressorTypeToLZ4();
+        break;
+    case Compression::zlib:
+        writer->SetCompressorTypeToZLib();
+        break;
+    }
+    errno = 0;
+    const bool good = writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError;
+    int reason = errno;
+    if (good && std::rename(temporary.c_str(), (folder / name).c_str()) == 0) {
+        const auto path = options_.run_dir / (kind + ".pvd");
+        collections_.try_emplace(kind, path).first->second.append(time, kind + "/" + name);
+        return;
+    }
+    reason = good ? errno : reason;
+    std::filesystem::remove(temporary, error);
+    if (writer->GetErrorCode() == vtkErrorCode::OutOfDiskSpaceError) {
+        reason = ENOSPC;
+    }
+    throw VizError(fmt::format("cannot write {}: {}", (folder / name).string(),
+                               reason != 0 ? std::strerror(reason) : "VTK's writer failed"));
+}
+
+} // namespace meltscope::viz

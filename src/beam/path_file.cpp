@@ -1,11 +1,12 @@
 #include "meltscope/beam/path_file.hpp"
 
+#include "text_number.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -51,32 +52,16 @@ bool is_header(const std::vector<Word>& words) {
            std::tolower(first[2]) == 'd' && std::tolower(first[3]) == 'e';
 }
 
-/// What a word may well be in a message: damaged files hold long or unprintable ones.
-std::string shown(std::string_view text) {
-    std::string result(text.substr(0, 40));
-    for (char& c : result) {
-        if (!std::isprint(static_cast<unsigned char>(c))) {
-            c = '?';
-        }
-    }
-    return result;
-}
-
 double read_number(const Word& word, std::string_view name, Place place) {
     place.column = word.column;
-    std::string_view digits = word.text;
-    if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') {
-        digits.remove_prefix(1);
-    }
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc{} || end != digits.data() + digits.size()) {
+    const std::optional<double> value = parse_number(word.text);
+    if (!value) {
         place.refuse(fmt::format("{} must be a number, not \"{}\"", name, shown(word.text)));
     }
-    if (!std::isfinite(value)) {
+    if (!std::isfinite(*value)) {
         place.refuse(fmt::format("{} must be finite, not \"{}\"", name, shown(word.text)));
     }
-    return value;
+    return *value;
 }
 
 struct Row {

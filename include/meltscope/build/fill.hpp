@@ -10,18 +10,19 @@ namespace meltscope {
 
 /// Sites of a cubic lattice: site (i,j,k) lies at origin + spacing (i,j,k).
 struct Lattice {
-    Vec3 origin = Vec3::Zero();        ///< m
-    double spacing = 0.0;              ///< m
-    Index3 count = Index3::Zero();     ///< sites along x, y, z
+    Vec3 origin = Vec3::Zero();    ///< m
+    double spacing = 0.0;          ///< m
+    Index3 count = Index3::Zero(); ///< sites along x, y, z
 };
 
-/// Tells for each site of a lattice which body it lies in, layer by layer, so that no more than a layer need be
-/// held. A later body replaces an earlier one. Each site is asked for at its place plus 1e-9 spacings along x, y
-/// and z: a face that coincides with sites up to rounding then always falls to the same side (see `contains`).
+/// Tells for each site of a lattice which body it lies in, layer by layer, so that no more than a layer need
+/// be held. A later body replaces an earlier one. Each site is asked for at its place plus 1e-9 spacings
+/// along x, y and z: a face that coincides with sites up to rounding then always falls to the same side (see
+/// `contains`).
 class LatticeFill {
   public:
-    /// Sorts what the bodies hold by layer. Keeps a reference to the bodies. Throws GeometryError for more than
-    /// 32767 bodies, shapes that check_shape refuses or a lattice without spacing.
+    /// Sorts what the bodies hold by layer. Keeps a reference to the bodies. Throws GeometryError for more
+    /// than 32767 bodies, shapes that check_shape refuses or a lattice without spacing.
     LatticeFill(std::span<const Shape> bodies, const Lattice& lattice);
 
     /// Writes the body's index, or -1, for all sites of layer k, x fastest, into `sites` (count x * count y).

@@ -27,10 +27,10 @@ struct Sphere {
 };
 
 struct Cylinder {
-    Vec3 base = Vec3::Zero();   ///< m, centre of the end from which the axis leaves
-    Vec3 axis = Vec3::UnitZ();  ///< direction; its length does not matter
-    double radius = 0.0;        ///< m
-    double height = 0.0;        ///< m
+    Vec3 base = Vec3::Zero();  ///< m, centre of the end from which the axis leaves
+    Vec3 axis = Vec3::UnitZ(); ///< direction; its length does not matter
+    double radius = 0.0;       ///< m
+    double height = 0.0;       ///< m
 };
 
 using Ball = Sphere;
@@ -40,7 +40,8 @@ struct Balls {
     std::vector<Ball> balls;
 };
 
-/// The inside of a closed triangle mesh; read_stl makes one. Triangles run counter-clockwise seen from outside.
+/// The inside of a closed triangle mesh; read_stl makes one. Triangles run counter-clockwise seen from
+/// outside.
 struct Solid {
     std::vector<Vec3> points; ///< m
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -51,8 +52,9 @@ using Shape = std::variant<Box, Sphere, Cylinder, Balls, Solid>;
 /// The smallest box around a shape; min > max for one without points.
 Box bounding_box(const Shape& shape);
 
-/// Whether a point (m) lies in the shape. Along x, the lower boundary belongs to the shape and the upper does not
-/// (for boxes and solids along y and z too), so that shapes which abut neither share a point nor miss one.
+/// Whether a point (m) lies in the shape. Along x, the lower boundary belongs to the shape and the upper does
+/// not (for boxes and solids along y and z too), so that shapes which abut neither share a point nor miss
+/// one.
 bool contains(const Shape& shape, const Vec3& point);
 
 /// Throws GeometryError unless the numbers are finite, sizes above zero and indices valid.

@@ -2,6 +2,7 @@
 
 #include "meltscope/constants.hpp"
 
+#include <Eigen/Geometry>
 #include <fmt/core.h>
 
 #include <algorithm>

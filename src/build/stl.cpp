@@ -2,6 +2,7 @@
 
 #include "../beam/text_number.hpp"
 
+#include <Eigen/Geometry>
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -7,9 +7,9 @@
 
 namespace meltscope {
 
-/// Reads an STL file, binary or ASCII; its coordinates times `scale` are metres. Points that are equal bit
-/// for bit are merged. A mesh that is inside out as a whole is turned. Throws GeometryError with the reason
-/// for a file that is cut short, too long or malformed, and for a mesh that check_closed refuses.
+/// Reads an STL file, binary or ASCII; its coordinates times `scale` are metres. Points of equal
+/// coordinates are merged. A mesh that is inside out as a whole is turned. Throws GeometryError with the
+/// reason for a file that is cut short, too long or malformed, and for a mesh that check_closed refuses.
 Solid read_stl(const std::filesystem::path& file, double scale = 1.0);
 
 /// The same from the file's bytes; `name` stands for the file in messages.

@@ -16,7 +16,8 @@ namespace {
 std::string view_of(const std::filesystem::path& picture) {
     const std::string stem = picture.stem().string();
     const auto underscore = stem.rfind('_');
-    if (picture.extension() != ".png" || underscore == std::string::npos || stem.size() - underscore - 1 < 6 ||
+    if (picture.extension() != ".png" || underscore == std::string::npos ||
+        stem.size() - underscore - 1 < 6 ||
         stem.find_first_not_of("0123456789", underscore + 1) != std::string::npos) {
         return {};
     }
@@ -36,10 +37,11 @@ std::vector<std::string> views_with_frames(const std::filesystem::path& frames_d
     return {views.begin(), views.end()};
 }
 
-bool encode_movie(const std::filesystem::path& frames_dir, const std::string& view, const std::filesystem::path& mp4,
-                  double fps) {
+bool encode_movie(const std::filesystem::path& frames_dir, const std::string& view,
+                  const std::filesystem::path& mp4, double fps) {
     if (!(fps > 0.0)) {
-        throw VizError(fmt::format("a movie of {} pictures a second is not possible; choose a positive number", fps));
+        throw VizError(
+            fmt::format("a movie of {} pictures a second is not possible; choose a positive number", fps));
     }
     const std::vector<std::string> views = views_with_frames(frames_dir);
     if (std::find(views.begin(), views.end(), view) == views.end()) {
@@ -52,10 +54,33 @@ bool encode_movie(const std::filesystem::path& frames_dir, const std::string& vi
     const std::filesystem::path target = std::filesystem::absolute(mp4);
     const std::filesystem::path temporary = target.string() + ".part";
     // yuv420p halves the colour planes, so sides must be even.
-    Child encoder({ffmpeg->string(), "-hide_banner", "-nostdin", "-loglevel", "error", "-y", "-framerate",
-                   fmt::format("{}", fps), "-pattern_type", "glob", "-i", view + "_[0-9]*.png", "-vf",
-                   "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "fast", "-crf", "18", "-pix_fmt",
-                   "yuv420p", "-movflags", "+faststart", "-f", "mp4", temporary.string()},
+    Child encoder({ffmpeg->string(),
+                   "-hide_banner",
+                   "-nostdin",
+                   "-loglevel",
+                   "error",
+                   "-y",
+                   "-framerate",
+                   fmt::format("{}", fps),
+                   "-pattern_type",
+                   "glob",
+                   "-i",
+                   view + "_[0-9]*.png",
+                   "-vf",
+                   "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                   "-c:v",
+                   "libx264",
+                   "-preset",
+                   "fast",
+                   "-crf",
+                   "18",
+                   "-pix_fmt",
+                   "yuv420p",
+                   "-movflags",
+                   "+faststart",
+                   "-f",
+                   "mp4",
+                   temporary.string()},
                   frames_dir);
     std::string words = encoder.read_all();
     const int code = encoder.wait();

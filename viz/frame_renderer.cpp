@@ -1,0 +1,273 @@
+#include "viz/frame_renderer.hpp"
+
+#include "viz/annotations.hpp"
+#include "viz/display.hpp"
+#include "viz/panel.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <system_error>
+
+#include <vtkErrorCode.h>
+#include <vtkNew.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkPNGReader.h>
+#include <vtkPNGWriter.h>
+#include <vtkPointData.h>
+#include <vtkRenderWindow.h>
+#include <vtkStringArray.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <fmt/format.h>
+
+namespace meltscope::viz {
+
+namespace {
+
+constexpr int samples_a_pixel = 4;
+constexpr int dots_per_inch = 72; // a font of n points is n pixels high
+constexpr int png_compression = 2;
+constexpr const char* time_key = "time_s";
+
+struct View {
+    std::vector<std::unique_ptr<Panel>> panels;
+};
+
+View make_view(const std::string& name) {
+    View view;
+    if (name == "overview") {
+        view.panels.push_back(make_overview_panel());
+    } else {
+        throw VizError(fmt::format("there is no view '{}'", name));
+    }
+    return view;
+}
+
+/// Areas of the panels of a view, and of what surrounds them.
+struct Layout {
+    Rect caption;
+    Rect color_bar;
+    std::vector<Rect> panels;
+};
+
+Layout lay_out(const std::string& view, const std::array<int, 2>& size, double font) {
+    const double width = size[0];
+    const double height = size[1];
+    const double margin = font;
+    const double caption_height = 3.6 * font;
+    const double bar_width = 7.4 * font;
+    Layout layout;
+    layout.caption = {margin, height - 0.5 * margin - caption_height, width - 2.0 * margin, caption_height};
+    layout.color_bar = {width - bar_width - margin, 2.0 * margin, bar_width,
+                        height - caption_height - 4.0 * margin};
+    const Rect body{margin, margin, width - bar_width - 3.0 * margin, height - caption_height - 2.0 * margin};
+    (void)view;
+    layout.panels = {body};
+    return layout;
+}
+
+const std::vector<double>& node_values(const Snapshot& snapshot, const std::string& field) {
+    if (field == "phi") {
+        return *snapshot.phi;
+    }
+    if (field == "phi_hat") {
+        return *snapshot.phi_hat;
+    }
+    return field == "mass" ? *snapshot.mass : *snapshot.temperature;
+}
+
+/// For temperature from the coldest node to a fifth above liquidus, rounded; else all there is.
+std::array<double, 2> choose_range(const Snapshot& snapshot, const std::string& field) {
+    const std::vector<double>& values = node_values(snapshot, field);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    if (field == "temperature") {
+        constexpr double step = 50.0; // K
+        const double bottom = step * std::floor(*low / step + 1e-9);
+        return {bottom, std::max(step * std::ceil(1.2 * snapshot.liquidus / step), bottom + step)};
+    }
+    return {*low, *high > *low ? *high : *low + 1.0};
+}
+
+} // namespace
+
+struct FrameRenderer::Impl {
+    explicit Impl(Backend wanted) : display(std::make_unique<Display>(wanted)) {
+        window = vtkSmartPointer<vtkRenderWindow>::New();
+        if (display->x_display() != nullptr) {
+            window->SetDisplayId(display->x_display());
+        }
+        window->SetOffScreenRendering(1);
+        window->SetMultiSamples(samples_a_pixel);
+        window->SetDPI(dots_per_inch);
+        window->SetNumberOfLayers(3);
+        background->SetLayer(0);
+        background->InteractiveOff();
+        canvas.renderer()->SetLayer(2);
+        window->AddRenderer(background);
+        window->AddRenderer(canvas.renderer());
+    }
+
+    ~Impl() {
+        if (display->lost()) {
+            // Nothing that lives on a dead X connection can be taken down safely; it ends with the process.
+            window->Register(nullptr);
+            new std::map<std::string, View>(std::move(views));
+        }
+    }
+
+    View& view(const std::string& name) {
+        const auto found = views.find(name);
+        if (found != views.end()) {
+            return found->second;
+        }
+        View& made = views.emplace(name, make_view(name)).first->second;
+        for (const auto& panel : made.panels) {
+            window->AddRenderer(panel->renderer());
+        }
+        return made;
+    }
+
+    std::unique_ptr<Display> display; // outlives the window
+    vtkSmartPointer<vtkRenderWindow> window;
+    vtkNew<vtkRenderer> background;
+    Canvas canvas;
+    std::map<std::string, View> views;
+    std::map<std::string, std::array<double, 2>> ranges; // by field, chosen once
+    std::string renderer_name;
+};
+
+FrameRenderer::FrameRenderer(Backend backend) : impl_(std::make_unique<Impl>(backend)) {}
+
+FrameRenderer::~FrameRenderer() = default;
+
+Backend FrameRenderer::backend() const {
+    return impl_->display->backend();
+}
+
+std::string FrameRenderer::window_class() const {
+    return impl_->window->GetClassName();
+}
+
+std::string FrameRenderer::renderer_name() const {
+    return impl_->renderer_name;
+}
+
+vtkSmartPointer<vtkImageData> FrameRenderer::render(const Instant& instant,
+                                                    const std::vector<HistoryPoint>& history,
+                                                    const RenderOptions& options,
+                                                    const std::string& view_name) {
+    Impl& impl = *impl_;
+    const Snapshot& snapshot = *instant.snapshot;
+    const Theme& colors = theme(options.background);
+
+    Picture picture;
+    picture.instant = &instant;
+    picture.history = &history;
+    picture.field = options.field;
+    picture.values = &node_values(snapshot, options.field);
+    picture.theme = &colors;
+    picture.size = options.size;
+    picture.font = std::max(9.0, 0.0255 * std::min<double>(options.size[1], 0.625 * options.size[0]));
+    picture.line = picture.font / 10.0;
+    if (options.color_range) {
+        picture.range = *options.color_range;
+    } else {
+        picture.range =
+            impl.ranges.try_emplace(options.field, choose_range(snapshot, options.field)).first->second;
+    }
+    picture.colors = make_lookup_table(options.colormap, picture.range);
+    const auto colored = [&](vtkPolyData* part) {
+        auto copy = vtkSmartPointer<vtkPolyData>::New();
+        copy->ShallowCopy(part);
+        copy->GetPointData()->SetScalars(
+            sample_onto(part, snapshot.nodes, *picture.values, options.field.c_str()));
+        return copy;
+    };
+    picture.surface =
+        options.field == "temperature" ? instant.free_surface : colored(instant.geometry->free_surface);
+    picture.walls = colored(instant.geometry->walls);
+
+    View& shown = impl.view(view_name);
+    for (auto& [name, view] : impl.views) {
+        for (const auto& panel : view.panels) {
+            panel->renderer()->SetDraw(&view == &shown);
+        }
+    }
+    impl.window->SetSize(options.size[0], options.size[1]);
+    impl.background->SetBackground(colors.background.data());
+    impl.canvas.clear();
+    const Layout layout = lay_out(view_name, options.size, picture.font);
+    for (std::size_t i = 0; i < shown.panels.size(); ++i) {
+        shown.panels[i]->update(picture, layout.panels[i], impl.canvas);
+    }
+    draw_caption(impl.canvas, picture, layout.caption);
+    draw_color_bar(impl.canvas, picture, layout.color_bar);
+
+    impl.window->Render();
+    vtkNew<vtkWindowToImageFilter> grab;
+    grab->SetInput(impl.window);
+    grab->SetInputBufferTypeToRGB();
+    grab->ReadFrontBufferOff();
+    grab->ShouldRerenderOff();
+    grab->Update();
+    if (impl.display->lost()) {
+        throw VizError("the X server that the pictures were made on is gone");
+    }
+    if (impl.renderer_name.empty()) {
+        // "OpenGL renderer string:  llvmpipe (...)" in the window's report.
+        const std::string report = impl.window->ReportCapabilities();
+        const std::string label = "OpenGL renderer string:";
+        if (const auto at = report.find(label); at != std::string::npos) {
+            const auto begin = report.find_first_not_of(' ', at + label.size());
+            impl.renderer_name = report.substr(begin, report.find('\n', begin) - begin);
+        }
+    }
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->ShallowCopy(grab->GetOutput());
+    return image;
+}
+
+void write_png(vtkImageData* image, const std::filesystem::path& path, double time) {
+    const std::string temporary = path.string() + ".part";
+    vtkNew<vtkPNGWriter> writer;
+    writer->SetFileName(temporary.c_str());
+    writer->SetCompressionLevel(png_compression);
+    writer->AddText(time_key, fmt::format("{}", time).c_str());
+    writer->SetInputData(image);
+    errno = 0;
+    writer->Write();
+    int reason = errno;
+    if (writer->GetErrorCode() == vtkErrorCode::NoError) {
+        if (std::rename(temporary.c_str(), path.c_str()) == 0) {
+            return;
+        }
+        reason = errno;
+    }
+    std::error_code error;
+    std::filesystem::remove(temporary, error);
+    throw VizError(fmt::format("cannot write {}: {}", path.string(),
+                               reason != 0 ? std::strerror(reason) : "VTK's PNG writer failed"));
+}
+
+std::optional<double> png_time(const std::filesystem::path& path) {
+    vtkNew<vtkPNGReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->UpdateInformation();
+    int range[2] = {0, 0};
+    reader->GetTextChunks(time_key, range);
+    if (range[0] >= range[1]) {
+        return std::nullopt;
+    }
+    const char* text = reader->GetTextValue(range[0]);
+    double time = 0.0;
+    if (text == nullptr || std::from_chars(text, text + std::strlen(text), time).ec != std::errc()) {
+        return std::nullopt;
+    }
+    return time;
+}
+
+} // namespace meltscope::viz

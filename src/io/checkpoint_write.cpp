@@ -3,7 +3,8 @@
 
 #include "checkpoint_layout.hpp"
 #include "checkpoint_seal.hpp"
-#include "hdf5_support.hpp"
+#include "checkpoint_sink.hpp"
+#include "posix_file.hpp"
 
 #include <fmt/format.h>
 
@@ -88,10 +89,16 @@ Dims chunk_dims(const Dims& dims) {
     return chunk;
 }
 
+void require_all_written(const CheckpointSink& sink, const std::filesystem::path& path) {
+    if (sink.error_number != 0)
+        throw_file_error(cannot_write, path, sink.error_number);
+}
+
 /// Writes the parts of one open file; each member throws CheckpointError.
 class Writer {
   public:
-    Writer(const Hdf5Handle& file, const std::filesystem::path& path) : file_(file), path_(path) {}
+    Writer(const Hdf5Handle& file, const CheckpointSink& sink, const std::filesystem::path& path)
+        : file_(file), sink_(sink), path_(path) {}
 
     void group(const char* name) const {
         take(H5Gcreate2(file_, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
@@ -125,6 +132,7 @@ class Writer {
                  H5Dclose);
         if (!is_empty && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
             throw_hdf5_error(cannot_write, path_);
+        require_all_written(sink_, path_); // a full disk need not be found out array by array
     }
 
     void doubles(const std::string& name, const Dims& dims, const std::vector<double>& values) const {
@@ -144,6 +152,7 @@ class Writer {
     Hdf5Handle take(hid_t id, Hdf5Handle::Close close) const { return own(id, close, cannot_write, path_); }
 
     const Hdf5Handle& file_;
+    const CheckpointSink& sink_;
     const std::filesystem::path& path_;
 };
 
@@ -181,14 +190,12 @@ void write_contents(const Writer& writer, const CheckpointData& data) {
         writer.attribute("/ledger", name.c_str(), H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
-Hdf5Handle create_file(const std::filesystem::path& temporary, const std::filesystem::path& path) {
+Hdf5Handle create_file(CheckpointSink& sink, const std::filesystem::path& path) {
     const auto creation = own(H5Pcreate(H5P_FILE_CREATE), H5Pclose, cannot_write, path);
-    const auto access = own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, cannot_write, path);
-    // Nobody else knows the temporary, and some network file systems have no locks to offer.
-    if (H5Pset_userblock(creation, seal_size) < 0 || H5Pset_obj_track_times(creation, false) < 0 ||
-        H5Pset_file_locking(access, false, true) < 0)
+    if (H5Pset_userblock(creation, seal_size) < 0 || H5Pset_obj_track_times(creation, false) < 0)
         throw_hdf5_error(cannot_write, path);
-    return own(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose, cannot_write, path);
+    const auto access = own(make_sink_access(sink), cannot_write, path);
+    return own(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose, cannot_write, path);
 }
 
 } // namespace
@@ -197,10 +204,12 @@ void write_checkpoint(const std::filesystem::path& path, const CheckpointData& d
     require_consistent(data, path);
     const Hdf5Silence silence;
     AtomicFile target(path);
-    auto file = create_file(target.temporary_path(), path);
-    write_contents(Writer(file, path), data);
-    if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 || !file.close())
+    CheckpointSink sink{target.descriptor()};
+    auto file = create_file(sink, path);
+    write_contents(Writer(file, sink, path), data);
+    if (!file.close())
         throw_hdf5_error(cannot_write, path);
+    require_all_written(sink, path);
     seal_checkpoint(target.temporary_path());
     target.commit();
 }

@@ -14,16 +14,6 @@ herr_t take_first_description(unsigned depth, const H5E_error2_t* error, void* r
     return 0;
 }
 
-/// HDF5 writes "..., errno = 28, error message = 'No space left on device', buf = 0x...": the quoted part.
-std::string words_of_system(const std::string& description) {
-    constexpr std::string_view key = "error message = '";
-    const auto start = description.find(key);
-    if (start == std::string::npos)
-        return description;
-    const auto end = description.find('\'', start + key.size());
-    return description.substr(start + key.size(), end - start - key.size());
-}
-
 } // namespace
 
 Hdf5Silence::Hdf5Silence() {
@@ -38,17 +28,21 @@ Hdf5Silence::~Hdf5Silence() {
 std::string hdf5_reason() {
     std::string reason;
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first_description, &reason);
-    return reason.empty() ? "HDF5 gives no reason" : words_of_system(reason);
+    return reason.empty() ? "HDF5 gives no reason" : reason;
 }
 
 void throw_hdf5_error(std::string_view what, const std::filesystem::path& path) {
     throw CheckpointError(fmt::format("{} {}: {}", what, path.string(), hdf5_reason()));
 }
 
-Hdf5Handle own(hid_t id, Hdf5Handle::Close close, std::string_view what, const std::filesystem::path& path) {
-    if (id < 0)
+Hdf5Handle own(Hdf5Handle handle, std::string_view what, const std::filesystem::path& path) {
+    if (handle < 0)
         throw_hdf5_error(what, path);
-    return {id, close};
+    return handle;
+}
+
+Hdf5Handle own(hid_t id, Hdf5Handle::Close close, std::string_view what, const std::filesystem::path& path) {
+    return own(Hdf5Handle(id, close), what, path);
 }
 
 } // namespace meltscope

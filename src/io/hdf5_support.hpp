@@ -41,11 +41,14 @@ class Hdf5Silence {
     void* report_data_ = nullptr;
 };
 
-/// The innermost reason on HDF5's error stack; the system's words alone where HDF5 quotes the system.
+/// The innermost reason on HDF5's error stack.
 std::string hdf5_reason();
 
 /// Throws CheckpointError "WHAT FILE: reason".
 [[noreturn]] void throw_hdf5_error(std::string_view what, const std::filesystem::path& path);
+
+/// Passes a valid identifier on; throws by throw_hdf5_error for another.
+Hdf5Handle own(Hdf5Handle handle, std::string_view what, const std::filesystem::path& path);
 
 /// Takes what an H5?open or H5?create gave; throws by throw_hdf5_error if it is not valid.
 Hdf5Handle own(hid_t id, Hdf5Handle::Close close, std::string_view what, const std::filesystem::path& path);

@@ -19,7 +19,8 @@ class AtomicFile {
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// For libraries that open files by name; they must have closed it before commit().
+    /// For writing by other means than write(): the temporary, open for reading and writing.
+    int descriptor() const { return descriptor_; }
     const std::filesystem::path& temporary_path() const { return temporary_; }
 
     /// Appends to the temporary.

@@ -54,8 +54,8 @@ struct CheckpointData {
 /// (attributes), and the attributes schema_version, time, step, dt of the root. Every array is chunked with
 /// Fletcher32, and the whole file is sealed with its length and a hash in the user block. It appears under
 /// `path` whole or not at all; equal data make equal bytes. Throws CheckpointError for arrays whose sizes or
-/// names do not fit, and for what HDF5 reports (a full disk ...); std::system_error for what the system
-/// reports.
+/// names do not fit, std::system_error for what the system reports (a full disk ...). Nothing of a checkpoint
+/// that failed is left, and the former one under that name stays.
 void write_checkpoint(const std::filesystem::path& path, const CheckpointData& data);
 
 /// Reads a checkpoint back, bit for bit. Grid arrays, extra arrays and ledger entries come ordered by name.

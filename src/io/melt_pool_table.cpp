@@ -10,6 +10,7 @@
 #include <charconv>
 #include <fcntl.h>
 #include <limits>
+#include <set>
 #include <unistd.h>
 
 namespace meltscope {
@@ -52,13 +53,14 @@ std::string melt_pool_header(const std::vector<double>& isotherms) {
     if (isotherms.empty())
         throw std::invalid_argument("the melt-pool table needs an isotherm");
     std::string header = "time_s,laser_x_m,laser_y_m,power_W,speed_m_s";
-    for (std::size_t n = 0; n < isotherms.size(); ++n) {
-        if (std::find(isotherms.begin(), isotherms.begin() + static_cast<std::ptrdiff_t>(n), isotherms[n]) !=
-            isotherms.begin() + static_cast<std::ptrdiff_t>(n))
-            throw std::invalid_argument(fmt::format("the isotherm of {} K is asked for twice", isotherms[n]));
-        const auto suffix = n == 0 ? std::string() : fmt::format("_{}K", isotherms[n]);
-        for (const auto* name : {"length_m", "width_m", "depth_m", "volume_m3"})
-            header += fmt::format(",{}{}", name, suffix);
+    std::set<std::string> named;
+    for (const double isotherm : isotherms) {
+        const auto name = fmt::format("{:.7g}K", isotherm); // 1290 degC is 1563.15 K, whatever its last bit
+        if (!named.insert(name).second)
+            throw std::invalid_argument(fmt::format("the isotherm {} is asked for twice", name));
+        const auto suffix = named.size() == 1 ? std::string() : "_" + name;
+        for (const auto* figure : {"length_m", "width_m", "depth_m", "volume_m3"})
+            header += fmt::format(",{}{}", figure, suffix);
     }
     return header + ",peak_K,liquid_particles,absorbed_J,lost_J";
 }

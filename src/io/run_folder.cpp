@@ -60,6 +60,8 @@ bool is_removable(const fs::directory_entry& entry, const fs::path& root, bool t
     const auto final_name = final_name_of_temporary(name);
     if (!final_name.empty())
         relative.replace_filename(final_name);
+    else if (relative.extension() == ".part") // how the picture and ParaView writers name theirs
+        relative.replace_extension();
     else if (temporaries_only)
         return false;
     return is_run_output(relative);

@@ -37,7 +37,7 @@ Snapshot snapshot_at(double time, const std::vector<double>& isotherms = {1620})
 
 TEST(MeltPoolTable, has_the_columns_of_the_interface) {
     EXPECT_EQ(melt_pool_header({1620}), header);
-    EXPECT_EQ(melt_pool_header({1620, 1563, 1500.15}),
+    EXPECT_EQ(melt_pool_header({1620, 1563, 1500.1499999999999}),
               "time_s,laser_x_m,laser_y_m,power_W,speed_m_s,length_m,width_m,depth_m,volume_m3,"
               "length_m_1563K,width_m_1563K,depth_m_1563K,volume_m3_1563K,"
               "length_m_1500.15K,width_m_1500.15K,depth_m_1500.15K,volume_m3_1500.15K,"

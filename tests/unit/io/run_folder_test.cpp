@@ -22,7 +22,8 @@ constexpr const char* outputs[] = {"run.toml",         "run.json",
                                    "grid/grid_1.vti",  "pool/pool_000001.vtp",
                                    "overview.mp4",     "frames/overview_000012.png",
                                    "plots/length.png", "checkpoints/step_000000500.h5",
-                                   ".run.json.77.tmp", "checkpoints/.step_000000500.h5.77.tmp"};
+                                   ".run.json.77.tmp", "checkpoints/.step_000000500.h5.77.tmp",
+                                   "surface.pvd.part", "surface/surface_000013.vtp.part"};
 constexpr const char* others[] = {"notes.txt",
                                   "run.toml.bak",
                                   "holiday.mp4",
@@ -32,6 +33,7 @@ constexpr const char* others[] = {"notes.txt",
                                   "checkpoints/step_1.h5.gz",
                                   "data/particles.pvd",
                                   ".config.tmp",
+                                  "download.zip.part",
                                   "particles/dem.csv"};
 
 TEST(RunPaths, are_those_of_the_interface) {
@@ -92,7 +94,7 @@ TEST(RunFolder, resuming_removes_only_leftover_temporaries) {
         put(folder / name);
     const RunFolder run(folder.path(), ExistingRun::resume);
     for (const auto* name : outputs) {
-        const bool is_temporary = std::string(name).ends_with(".tmp");
+        const bool is_temporary = std::string(name).ends_with(".tmp") || std::string(name).ends_with(".part");
         EXPECT_EQ(fs::exists(folder / name), !is_temporary) << name;
     }
 }

@@ -146,11 +146,12 @@ SurfaceActor::SurfaceActor(vtkRenderer* renderer) {
     mapper_->SetUseLookupTableScalarRange(true);
     mapper_->SetResolveCoincidentTopologyToPolygonOffset();
     actor_->SetMapper(mapper_);
-    // Mostly the field's own colour, with enough shading to show form.
+    // A face turned up shows the field's own colour, others a darker one. The broad gloss keeps form visible
+    // where the colour map is black.
     actor_->GetProperty()->SetAmbient(0.55);
-    actor_->GetProperty()->SetDiffuse(0.5);
-    actor_->GetProperty()->SetSpecular(0.12);
-    actor_->GetProperty()->SetSpecularPower(18.0);
+    actor_->GetProperty()->SetDiffuse(0.45);
+    actor_->GetProperty()->SetSpecular(0.14);
+    actor_->GetProperty()->SetSpecularPower(3.0);
     renderer->AddActor(actor_);
 }
 

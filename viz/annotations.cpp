@@ -94,7 +94,7 @@ std::vector<double> nice_ticks(double low, double high, int wanted) {
         return ticks;
     }
     double step = round_down((high - low) / wanted);
-    while ((high - low) / step > 1.4 * wanted) {
+    while ((high - low) / step > 1.8 * wanted) {
         step = round_down(step * 2.6);
     }
     for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1.0) {

@@ -43,6 +43,12 @@ Rgb unpack(std::uint32_t rgb) {
             static_cast<double>(rgb & 255U) / 255.0};
 }
 
+double luminance(const Rgb& color) {
+    return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+}
+
+constexpr double darkest = 0.17; // luminance
+
 } // namespace
 
 const std::vector<std::string>& colormap_names() {
@@ -58,7 +64,7 @@ const std::vector<std::string>& colormap_names() {
 
 const Theme& theme(Background background) {
     static const Theme dark{
-        unpack(0x1b1e24), unpack(0xf0f1f3),
+        unpack(0x0e1014), unpack(0xf0f1f3),
         unpack(0x9aa1ad), unpack(0x3a404b),
         unpack(0xffffff), unpack(0xc4cad4),
         unpack(0x7fc4ff), unpack(0x7fc4ff),
@@ -84,14 +90,23 @@ vtkSmartPointer<vtkLookupTable> make_lookup_table(const std::string& colormap,
     table->SetNumberOfTableValues(colors);
     table->SetTableRange(range[0], range[1]);
     table->SetNanColor(0.5, 0.5, 0.5, 1.0);
+    // Cold material is not quite black, so that light and shade show its form; the order of brightness stays.
+    const double lift = std::max(0.0, darkest - luminance(unpack(map->rgb.front())));
     for (int i = 0; i < colors; ++i) {
         const double position = 32.0 * i / (colors - 1);
         const auto left = static_cast<std::size_t>(std::min(31.0, std::floor(position)));
         const double weight = position - static_cast<double>(left);
         const Rgb a = unpack(map->rgb.at(left));
         const Rgb b = unpack(map->rgb.at(left + 1));
-        table->SetTableValue(i, a[0] + weight * (b[0] - a[0]), a[1] + weight * (b[1] - a[1]),
-                             a[2] + weight * (b[2] - a[2]), 1.0);
+        Rgb color{};
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            color.at(channel) = a.at(channel) + weight * (b.at(channel) - a.at(channel));
+        }
+        const double added = lift * std::pow(1.0 - luminance(color), 3);
+        for (double& channel : color) {
+            channel = std::min(1.0, channel + added);
+        }
+        table->SetTableValue(i, color[0], color[1], color[2], 1.0);
     }
     return table;
 }

@@ -29,6 +29,7 @@ struct Theme {
 const Theme& theme(Background background);
 
 /// 256 colours of the map over [range[0], range[1]]; values outside take the end colours, NaN is grey.
+/// Maps that start at black are brightened a little towards white, least where they are bright.
 vtkSmartPointer<vtkLookupTable> make_lookup_table(const std::string& colormap,
                                                   const std::array<double, 2>& range);
 

@@ -16,6 +16,7 @@
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkReverseSense.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
@@ -50,18 +51,17 @@ vtkSmartPointer<vtkPolyData> isosurface(const NodeLattice& nodes, const std::vec
     contour->ComputeNormalsOn();
     contour->ComputeScalarsOff();
     contour->SetInterpolateAttributes(carried != nullptr);
-    contour->Update();
+    // Triangles must turn the way their normals point: renderers tell a face's outer side by it.
+    vtkNew<vtkReverseSense> reverse;
+    reverse->SetInputConnection(contour->GetOutputPort());
+    reverse->SetReverseCells(towards_higher);
+    reverse->SetReverseNormals(towards_higher);
+    reverse->Update();
     auto surface = vtkSmartPointer<vtkPolyData>::New();
-    surface->ShallowCopy(contour->GetOutput());
+    surface->ShallowCopy(reverse->GetOutput());
     surface->GetPointData()->RemoveArray("contoured");
     if (vtkDataArray* normals = surface->GetPointData()->GetNormals()) {
         normals->SetName("normals");
-        if (towards_higher) {
-            for (vtkIdType i = 0; i < normals->GetNumberOfTuples(); ++i) {
-                double* normal = normals->GetTuple(i);
-                normals->SetTuple3(i, -normal[0], -normal[1], -normal[2]);
-            }
-        }
     }
     if (surface->GetPoints() == nullptr) {
         surface = empty_data_set();

@@ -85,9 +85,8 @@ std::array<double, 2> choose_range(const Snapshot& snapshot, const std::string& 
     const std::vector<double>& values = node_values(snapshot, field);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     if (field == "temperature") {
-        constexpr double step = 50.0; // K
-        const double bottom = step * std::floor(*low / step + 1e-9);
-        return {bottom, std::max(step * std::ceil(1.2 * snapshot.liquidus / step), bottom + step)};
+        const double bottom = 50.0 * std::floor(*low / 50.0 + 1e-9); // K
+        return {bottom, std::max(100.0 * std::ceil(1.2 * snapshot.liquidus / 100.0), bottom + 100.0)};
     }
     return {*low, *high > *low ? *high : *low + 1.0};
 }

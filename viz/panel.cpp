@@ -62,15 +62,14 @@ Panel::Panel() {
     renderer_->SetLayer(1);
     renderer_->InteractiveOff();
     renderer_->AutomaticLightCreationOff();
-    // Light from behind the viewer's left shoulder, and a little from the right so that no side is black.
-    for (const auto& [x, y, intensity] : {std::array{-0.6, 0.9, 0.85}, std::array{0.8, 0.3, 0.35}}) {
-        vtkNew<vtkLight> light;
-        light->SetLightTypeToCameraLight();
-        light->SetPosition(x, y, 1.0);
-        light->SetFocalPoint(0.0, 0.0, 0.0);
-        light->SetIntensity(intensity);
-        renderer_->AddLight(light);
-    }
+    // Fixed to the scene: from above, a little from the front left, so that faces turned up are the
+    // brightest.
+    vtkNew<vtkLight> light;
+    light->SetLightTypeToSceneLight();
+    light->SetPosition(-0.35, -0.45, 1.0);
+    light->SetFocalPoint(0.0, 0.0, 0.0);
+    light->SetIntensity(1.1);
+    renderer_->AddLight(light);
 }
 
 void Panel::place(const Picture& picture, const Rect& area) {

@@ -44,7 +44,7 @@ class OverviewPanel : public Panel {
                                 (corner & 2) != 0 ? geometry.upper.y() : geometry.lower.y(),
                                 (corner & 4) != 0 ? geometry.upper.z() : geometry.lower.z());
         }
-        fit_camera(renderer_->GetActiveCamera(), points, -(front - 0.45 * along + 0.85 * Vec3::UnitZ()),
+        fit_camera(renderer_->GetActiveCamera(), points, -(front - 0.32 * along + 0.85 * Vec3::UnitZ()),
                    Vec3::UnitZ(), area.width / area.height);
         renderer_->ResetCameraClippingRange();
 
@@ -54,7 +54,7 @@ class OverviewPanel : public Panel {
         style.horizontal = Align::middle;
         style.vertical = Align::high;
         Pixel label = to_pixel(picture, area, 0.5 * (start + end) + tick);
-        label[1] -= 0.35 * picture.font;
+        label[1] -= 0.6 * picture.font;
         canvas.text(label, format_length(bar), style);
     }
 

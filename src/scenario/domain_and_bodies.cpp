@@ -1,9 +1,7 @@
 #include "scenario_parts.hpp"
-
-#include "meltscope/scenario/nearest_word.hpp"
+#include "scenario_words.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -58,16 +56,15 @@ void check_meets(const Section& section, const DomainSpec& domain, const Vec3& m
     }
 }
 
-BoxSpec read_box(const Section& section, const DomainSpec& domain) {
-    BoxSpec box{section.vector("min", quantity::length), section.vector("max", quantity::length)};
+Box read_box(const Section& section, const DomainSpec& domain) {
+    Box box{section.vector("min", quantity::length), section.vector("max", quantity::length)};
     check_box(section, box.min, box.max);
     check_meets(section, domain, box.min, box.max);
     return box;
 }
 
-SphereSpec read_sphere(const Section& section, const DomainSpec& domain) {
-    SphereSpec sphere{section.vector("center", quantity::length),
-                      section.above("radius", quantity::length, 0.0)};
+Sphere read_sphere(const Section& section, const DomainSpec& domain) {
+    Sphere sphere{section.vector("center", quantity::length), section.above("radius", quantity::length, 0.0)};
     const Vec3 nearest = sphere.center.cwiseMax(domain.min).cwiseMin(domain.max);
     if (!((nearest - sphere.center).norm() < sphere.radius)) {
         fail_outside(section, domain);
@@ -75,8 +72,8 @@ SphereSpec read_sphere(const Section& section, const DomainSpec& domain) {
     return sphere;
 }
 
-CylinderSpec read_cylinder(const Section& section, const DomainSpec& domain) {
-    CylinderSpec cylinder;
+Cylinder read_cylinder(const Section& section, const DomainSpec& domain) {
+    Cylinder cylinder;
     cylinder.base = section.vector("base", quantity::length);
     cylinder.axis = section.direction("axis", cylinder.axis);
     cylinder.radius = section.above("radius", quantity::length, 0.0);
@@ -90,13 +87,11 @@ CylinderSpec read_cylinder(const Section& section, const DomainSpec& domain) {
 
 PowderSpec read_powder(const Section& section, const DomainSpec& domain) {
     PowderSpec powder;
-    powder.min = section.vector("min", quantity::length);
-    powder.max = section.vector("max", quantity::length);
-    check_box(section, powder.min, powder.max);
-    check_meets(section, domain, powder.min, powder.max);
+    powder.box = read_box(section, domain);
     powder.d10 = section.above("d10", quantity::length, 0.0);
-    powder.d50 = section.above("d50", quantity::length, powder.d10);
-    powder.d90 = section.above("d90", quantity::length, powder.d50);
+    powder.d50 = section.in_range("d50", quantity::length, powder.d10, no_limit);
+    powder.d90 = section.in_range("d90", quantity::length, powder.d50, no_limit);
+    powder.basis = section.choice("percentiles", words::percentiles, powder.basis);
     powder.packing = section.above("packing", quantity::number, 0.0, 0.74, powder.packing);
     powder.seed =
         static_cast<std::uint64_t>(section.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
@@ -108,7 +103,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>>& shape_keys(
         {"box", {"min", "max"}},
         {"sphere", {"center", "radius"}},
         {"cylinder", {"base", "axis", "radius", "height"}},
-        {"powder", {"min", "max", "d10", "d50", "d90", "packing", "seed"}},
+        {"powder", {"min", "max", "d10", "d50", "d90", "percentiles", "packing", "seed"}},
         {"balls", {"file"}},
         {"stl", {"file", "scale"}}};
     return keys;
@@ -130,8 +125,7 @@ ShapeSpec read_shape(const Section& section, const std::string& shape, const Dom
     if (shape == "balls") {
         return BallsSpec{section.file("file")};
     }
-    return StlSpec{section.file("file"),
-                   section.above("scale", quantity::length, 0.0, std::numeric_limits<double>::max(), 1.0)};
+    return StlSpec{section.file("file"), section.above("scale", quantity::length, 0.0, no_limit, 1.0)};
 }
 
 BodySpec read_body(const Section& section, const DomainSpec& domain,
@@ -185,8 +179,7 @@ FaceSpec read_face(const Section& boundary, const std::string& name, double ambi
         face.temperature = section.above("temperature", quantity::temperature, 0.0, highest_temperature);
     } else if (section.has("convection")) {
         face.kind = FaceSpec::Kind::convection;
-        face.convection = section.in_range("convection", quantity::heat_transfer_coefficient, 0.0,
-                                           std::numeric_limits<double>::max());
+        face.convection = section.in_range("convection", quantity::heat_transfer_coefficient, 0.0, no_limit);
         face.ambient = section.above("ambient", quantity::temperature, 0.0, highest_temperature, ambient);
     } else {
         face.kind = FaceSpec::Kind::flux;

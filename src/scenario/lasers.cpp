@@ -32,8 +32,7 @@ Vec3 path_point(const Section& element, const char* key, const DomainSpec& domai
 }
 
 std::optional<double> segment_power(const Section& element) {
-    return element.has("power") ? std::optional(element.in_range("power", quantity::power, 0.0,
-                                                                 std::numeric_limits<double>::max()))
+    return element.has("power") ? std::optional(element.in_range("power", quantity::power, 0.0, no_limit))
                                 : std::nullopt;
 }
 
@@ -52,7 +51,7 @@ void read_path_element(const Section& element, const DomainSpec& domain, ScanPat
     if (element.has("dwell")) {
         element.allow_only({"dwell", "power", "at", "on"});
         segment.kind = PathSegment::Kind::dwell;
-        segment.duration = element.in_range("dwell", quantity::time, 0.0, std::numeric_limits<double>::max());
+        segment.duration = element.in_range("dwell", quantity::time, 0.0, no_limit);
         segment.laser_on = element.flag("on", true);
         if (!started && !element.has("at")) {
             element.fail("the path has no start yet: begin it with move = [x, y, z]");
@@ -116,7 +115,6 @@ ScanPath read_pattern(const Section& laser) {
     const Section section = laser.section("pattern", island_keys);
     const bool islands = section.word("type", {"raster", "island"}) == "island";
     section.allow_only(islands ? island_keys : raster_keys);
-    constexpr double most = std::numeric_limits<double>::max();
 
     IslandSpec spec;
     RasterSpec& raster = spec.raster;
@@ -127,14 +125,14 @@ ScanPath read_pattern(const Section& laser) {
     raster.angle = section.has("angle") ? section.number("angle", quantity::angle) : 0.0;
     raster.speed = section.above("speed", quantity::speed, 0.0);
     raster.power = segment_power(section);
-    raster.turn_time = section.in_range("turn_time", quantity::time, 0.0, most, 0.0);
+    raster.turn_time = section.in_range("turn_time", quantity::time, 0.0, no_limit, 0.0);
     raster.bidirectional = section.flag("bidirectional", true);
     LayerSpec layers;
     layers.count = static_cast<int>(section.integer("layers", 1, 100000, 1));
-    layers.thickness = section.in_range("layer_thickness", quantity::length, 0.0, most, 0.0);
+    layers.thickness = section.in_range("layer_thickness", quantity::length, 0.0, no_limit, 0.0);
     layers.rotation =
         section.has("layer_rotation") ? section.number("layer_rotation", quantity::angle) : layers.rotation;
-    layers.pause = section.in_range("layer_pause", quantity::time, 0.0, most, 0.0);
+    layers.pause = section.in_range("layer_pause", quantity::time, 0.0, no_limit, 0.0);
     if (!islands) {
         return make_raster_layers(raster, layers);
     }
@@ -179,8 +177,7 @@ ScanPath read_path(const Section& laser, const DomainSpec& domain, double power)
                 PathFileFormat::additivefoam);
             path = read_path_file(laser.file("path_file"), format, power);
         }
-        path.start_time =
-            laser.in_range("start_time", quantity::time, 0.0, std::numeric_limits<double>::max(), 0.0);
+        path.start_time = laser.in_range("start_time", quantity::time, 0.0, no_limit, 0.0);
         check_path(path);
     } catch (const PathError& error) {
         laser.fail(source, error.what());
@@ -229,7 +226,7 @@ Laser read_laser(const Section& section, const DomainSpec& domain, std::size_t i
                                      "0123456789_-") != std::string::npos) {
         section.fail("name", "must be of letters, digits, _ and -, since commands name the laser by it");
     }
-    laser.power = section.in_range("power", quantity::power, 0.0, std::numeric_limits<double>::max());
+    laser.power = section.in_range("power", quantity::power, 0.0, no_limit);
     laser.absorptivity = section.in_range("absorptivity", quantity::number, 0.0, 1.0);
     laser.profile = section.choice("profile", words::profile, BeamProfile::gaussian);
     laser.spot_radius = read_spot_radius(section, laser.profile, domain);

@@ -68,8 +68,7 @@ Material read_material_section(const Section& section, const std::string& name) 
                                  "narrow range too, over which the latent heat is spread)",
                                  material.solidus, material.liquidus));
     }
-    material.latent_heat =
-        section.in_range("latent_heat", quantity::specific_energy, 0.0, std::numeric_limits<double>::max());
+    material.latent_heat = section.in_range("latent_heat", quantity::specific_energy, 0.0, no_limit);
     material.conductivity = read_property(section, "conductivity", material);
     material.heat_capacity = read_property(section, "heat_capacity", material);
     if (section.has("emissivity")) {

@@ -1,7 +1,6 @@
 #include "scenario_parts.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <charconv>
 
@@ -122,9 +121,8 @@ std::size_t element_index(const toml::array& list, const Override& change, std::
         const auto [rest, error] = std::from_chars(component.data() + 1, end, index);
         if (error != std::errc() || rest != end || index >= list.size()) {
             fail_override(change.text, list_key + component,
-                          list.empty()
-                              ? "the list is empty"
-                              : fmt::format("there are {}: [0] to [{}]", list.size(), list.size() - 1));
+                          list.empty() ? "the list is empty"
+                                       : fmt::format("the list has [0] to [{}]", list.size() - 1));
         }
         ++i;
         return index;
@@ -139,12 +137,13 @@ std::size_t element_index(const toml::array& list, const Override& change, std::
     if (list.size() == 1) {
         return 0;
     }
-    const bool named = !names.empty() && !names[0].empty();
+    std::string choices = fmt::format("{}[0] to {}[{}]", list_key, list_key, list.size() - 1);
+    for (const std::string& name : names) {
+        choices += name.empty() ? "" : fmt::format(", {}.{}", list_key, name);
+    }
     fail_override(change.text, spelled(change.components, change.components.size()),
-                  fmt::format("there are {} of {}: write {}[0]{}", list.size(), list_key, list_key,
-                              named ? fmt::format(" or a name, {}.{}; names: {}", list_key, names[0],
-                                                  fmt::join(names, ", "))
-                                    : ""));
+                  list.empty() ? fmt::format("the list {} is empty", list_key)
+                               : fmt::format("which one? There are {}", choices));
 }
 
 } // namespace

@@ -12,7 +12,6 @@
 namespace meltscope {
 namespace {
 
-constexpr double no_limit = std::numeric_limits<double>::max();
 constexpr double most_outputs = 999999.0; // names of files carry six digits
 
 PhysicsSpec read_physics(const Section& root) {

@@ -22,6 +22,8 @@ inline const Meanings<BeamProfile> profile{{"gaussian", BeamProfile::gaussian},
                                            {"top_hat", BeamProfile::top_hat},
                                            {"super_gaussian", BeamProfile::super_gaussian},
                                            {"volumetric", BeamProfile::volumetric}};
+inline const Meanings<PercentileBasis> percentiles{{"number", PercentileBasis::number},
+                                                   {"volume", PercentileBasis::volume}};
 inline const Meanings<OutputSpec::Particles> particles{{"surface", OutputSpec::Particles::surface},
                                                        {"melt", OutputSpec::Particles::melt},
                                                        {"all", OutputSpec::Particles::all},

@@ -73,7 +73,7 @@ std::string choices(std::string_view word, const std::vector<std::string>& allow
 
 std::string range_text(double low, bool open, double high) {
     const std::string from = fmt::format("{} {:g}", open ? "above" : "at least", low);
-    return high < std::numeric_limits<double>::max() ? fmt::format("{} and at most {:g}", from, high) : from;
+    return high < no_limit ? fmt::format("{} and at most {:g}", from, high) : from;
 }
 
 } // namespace

@@ -16,6 +16,9 @@
 
 namespace meltscope {
 
+/// Upper end of a range that has none.
+inline constexpr double no_limit = std::numeric_limits<double>::max();
+
 /// What the readers of one scenario share.
 struct ReadContext {
     const Units& units;
@@ -53,10 +56,10 @@ class Section {
     /// A number in [low, high] or (low, high]; an open lower end is written with `above`.
     double in_range(std::string_view key, const Quantity& quantity, double low, double high,
                     std::optional<double> fallback = {}) const;
-    double above(std::string_view key, const Quantity& quantity, double low,
-                 double high = std::numeric_limits<double>::max(), std::optional<double> fallback = {}) const;
+    double above(std::string_view key, const Quantity& quantity, double low, double high = no_limit,
+                 std::optional<double> fallback = {}) const;
     std::optional<double> maybe_above(std::string_view key, const Quantity& quantity, double low,
-                                      double high = std::numeric_limits<double>::max()) const;
+                                      double high = no_limit) const;
     std::int64_t integer(std::string_view key, std::int64_t low, std::int64_t high,
                          std::optional<std::int64_t> fallback = {}) const;
     bool flag(std::string_view key, bool fallback) const;

@@ -88,17 +88,17 @@ void write_material(Writer& writer, const Material& material) {
 struct ShapeWriter {
     Writer& writer;
 
-    void operator()(const BoxSpec& box) const {
+    void operator()(const Box& box) const {
         writer.put("shape", "box");
         writer.put("min", box.min);
         writer.put("max", box.max);
     }
-    void operator()(const SphereSpec& sphere) const {
+    void operator()(const Sphere& sphere) const {
         writer.put("shape", "sphere");
         writer.put("center", sphere.center);
         writer.put("radius", sphere.radius);
     }
-    void operator()(const CylinderSpec& cylinder) const {
+    void operator()(const Cylinder& cylinder) const {
         writer.put("shape", "cylinder");
         writer.put("base", cylinder.base);
         writer.put("axis", cylinder.axis);
@@ -107,11 +107,12 @@ struct ShapeWriter {
     }
     void operator()(const PowderSpec& powder) const {
         writer.put("shape", "powder");
-        writer.put("min", powder.min);
-        writer.put("max", powder.max);
+        writer.put("min", powder.box.min);
+        writer.put("max", powder.box.max);
         writer.put("d10", powder.d10);
         writer.put("d50", powder.d50);
         writer.put("d90", powder.d90);
+        writer.put("percentiles", words::of(words::percentiles, powder.basis));
         writer.put("packing", powder.packing);
         writer.put("seed", powder.seed);
     }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "meltscope/beam/laser.hpp"
+#include "meltscope/build/powder.hpp"
+#include "meltscope/build/shapes.hpp"
 #include "meltscope/material/material.hpp"
 #include "meltscope/vec3.hpp"
 
@@ -28,31 +30,6 @@ struct DomainSpec {
     double particle_spacing() const;
 };
 
-/// Shapes of bodies, lengths in metres.
-struct BoxSpec {
-    Vec3 min = Vec3::Zero();
-    Vec3 max = Vec3::Zero();
-};
-struct SphereSpec {
-    Vec3 center = Vec3::Zero();
-    double radius = 0.0;
-};
-struct CylinderSpec {
-    Vec3 base = Vec3::Zero(); ///< centre of one end
-    Vec3 axis{0.0, 0.0, 1.0}; ///< unit, from the base to the other end
-    double radius = 0.0;
-    double height = 0.0;
-};
-/// A random dense packing of balls inside a box; diameters are log-normal with the given percentiles.
-struct PowderSpec {
-    Vec3 min = Vec3::Zero();
-    Vec3 max = Vec3::Zero();
-    double d10 = 0.0;       ///< m, 10 % of the volume is in balls smaller than this
-    double d50 = 0.0;       ///< m
-    double d90 = 0.0;       ///< m
-    double packing = 0.5;   ///< 1, share of the box that the balls fill
-    std::uint64_t seed = 1; ///< the same seed packs the same balls; TOML holds up to 2^63 - 1
-};
 /// Balls from a table (columns x, y, z, r in metres).
 struct BallsSpec {
     std::filesystem::path file; ///< absolute
@@ -63,7 +40,8 @@ struct StlSpec {
     double scale = 1.0;         ///< m for one unit of the file (0.001 for a file in millimetres)
 };
 
-using ShapeSpec = std::variant<BoxSpec, SphereSpec, CylinderSpec, PowderSpec, BallsSpec, StlSpec>;
+/// What a body is made as; the files are read when it is built. A cylinder's axis is unit.
+using ShapeSpec = std::variant<Box, Sphere, Cylinder, PowderSpec, BallsSpec, StlSpec>;
 
 /// One body. A later body replaces an earlier one where both are.
 struct BodySpec {

@@ -61,12 +61,14 @@ SizeTable make_size_table(const PowderSpec& spec) {
     const double tenth = normal_quantile(0.9);
     const double width_below = std::log(spec.d50 / spec.d10) / tenth;
     const double width_above = std::log(spec.d90 / spec.d50) / tenth;
+    const double coarsest = (spec.box.max - spec.box.min).minCoeff();
     SizeTable table;
     double sum = 0.0;
     for (int i = 0; i < entries; ++i) {
         const double probability = std::clamp((i + 0.5) / entries, 0.01, 0.99);
         const double z = normal_quantile(probability);
-        const double diameter = spec.d50 * std::exp(z * (z < 0.0 ? width_below : width_above));
+        const double diameter =
+            std::min(coarsest, spec.d50 * std::exp(z * (z < 0.0 ? width_below : width_above)));
         const double relative = diameter / spec.d50;
         // Equal volumes of finer balls are more balls.
         sum += spec.basis == PercentileBasis::volume ? 1.0 / (relative * relative * relative) : 1.0;
@@ -90,10 +92,16 @@ double mean_ball_volume(const SizeTable& table) {
     return mean;
 }
 
-void check_diameters(const PowderSpec& spec) {
+void check_sizes(const PowderSpec& spec) {
     if (!(std::isfinite(spec.d90) && spec.d10 > 0.0 && spec.d10 <= spec.d50 && spec.d50 <= spec.d90)) {
         throw GeometryError(fmt::format("powder needs 0 < d10 <= d50 <= d90, not {}, {} and {} m", spec.d10,
                                         spec.d50, spec.d90));
+    }
+    const double thinnest = (spec.box.max - spec.box.min).minCoeff();
+    if (spec.d90 > thinnest) {
+        throw GeometryError(
+            fmt::format("powder of d90 {:.4g} m does not fit into its box, {:.4g} m at its thinnest",
+                        spec.d90, thinnest));
     }
 }
 
@@ -153,23 +161,26 @@ std::vector<Ball> fixed_balls(const PowderSpec& spec, const PowderGround& ground
     return near;
 }
 
-/// A random place in the box for a ball of the given radius, with its centre well out of what is solid.
-std::optional<Vec3> free_place(const BallsInBox& bed, double radius, Random& random) {
-    for (int attempt = 0; attempt < 1000; ++attempt) {
+/// A random place in the box for a ball of the given radius, clear of what is solid; where a thousand places
+/// are not, the best of them.
+Vec3 random_place(const BallsInBox& bed, double radius, Random& random) {
+    Vec3 best = 0.5 * bed.size;
+    double best_gap = -HUGE_VAL;
+    for (int attempt = 0; attempt < 1000 && best_gap < 0.0; ++attempt) {
         Vec3 place;
         for (int axis = 0; axis < 3; ++axis) {
             place[axis] = radius + random.uniform() * (bed.size[axis] - 2.0 * radius);
         }
-        const bool clear = (!bed.distance || bed.distance(place) > 0.5 * radius) &&
-                           std::none_of(bed.fixed.begin(), bed.fixed.end(), [&](const Ball& ball) {
-                               const double least = ball.radius + 0.5 * radius;
-                               return (place - ball.center).squaredNorm() < least * least;
-                           });
-        if (clear) {
-            return place;
+        double gap = bed.distance ? bed.distance(place) - radius : HUGE_VAL;
+        for (const Ball& ball : bed.fixed) {
+            gap = std::min(gap, (place - ball.center).norm() - ball.radius - radius);
+        }
+        if (gap > best_gap) {
+            best_gap = gap;
+            best = place;
         }
     }
-    return std::nullopt;
+    return best;
 }
 
 /// Packs to the given share of the free volume; none if the balls do not come to rest without overlap.
@@ -195,16 +206,9 @@ std::optional<std::vector<Ball>> try_packing(const PowderSpec& spec, const Powde
         };
     }
     for (const double d : diameters) {
-        const double radius = 0.5 * scale * d / spec.d50;
-        if (2.0 * radius > bed.size.minCoeff()) {
-            return std::nullopt;
-        }
-        const std::optional<Vec3> place = free_place(bed, radius, random);
-        if (!place) {
-            return std::nullopt;
-        }
+        const double radius = 0.5 * std::min(scale * d / spec.d50, bed.size.minCoeff());
+        bed.center.push_back(random_place(bed, radius, random));
         bed.radius.push_back(radius);
-        bed.center.push_back(*place);
     }
     if (!part_balls(bed, 0.5 * allowed_overlap)) {
         return std::nullopt;
@@ -223,25 +227,17 @@ std::optional<std::vector<Ball>> try_packing(const PowderSpec& spec, const Powde
 } // namespace
 
 std::vector<double> draw_diameters(const PowderSpec& spec, std::size_t count) {
-    check_diameters(spec);
+    check_sizes(spec);
     Random random(spec.seed);
     return draw_from(make_size_table(spec), count, random);
 }
 
 std::vector<Ball> pack_powder(const PowderSpec& spec, const PowderGround& ground) {
     check_shape(spec.box);
-    check_diameters(spec);
+    check_sizes(spec);
     if (!(spec.packing > 0.0 && spec.packing < 1.0)) {
         throw GeometryError(
             fmt::format("the packing of powder must lie between 0 and 1, not {}", spec.packing));
-    }
-    const double coarsest = make_size_table(spec).diameter.back();
-    const double thinnest = (spec.box.max - spec.box.min).minCoeff();
-    if (coarsest > thinnest) {
-        throw GeometryError(
-            fmt::format("the coarsest ball ({:.4g} m) does not fit into the powder's box, {:.4g} m "
-                        "at its thinnest",
-                        coarsest, thinnest));
     }
     const double free = free_volume(spec, ground);
     constexpr double most_balls = 1e6;
@@ -253,15 +249,15 @@ std::vector<Ball> pack_powder(const PowderSpec& spec, const PowderGround& ground
     if (auto balls = try_packing(spec, ground, free, spec.packing)) {
         return std::move(*balls);
     }
-    double reachable = 0.0;
-    double refused = spec.packing;
-    for (int i = 0; i < 6; ++i) {
-        const double middle = 0.5 * (reachable + refused);
-        (try_packing(spec, ground, free, middle) ? reachable : refused) = middle;
+    // In thousandths, so that the packing named is one that has been made.
+    int reachable = 0;
+    for (int refused = static_cast<int>(std::ceil(1000.0 * spec.packing)); refused - reachable > 1;) {
+        const int middle = (reachable + refused) / 2;
+        (try_packing(spec, ground, free, middle / 1000.0) ? reachable : refused) = middle;
     }
     throw GeometryError(
-        fmt::format("powder cannot be packed to {:.3g} of the box's volume; {:.3g} can be reached",
-                    spec.packing, std::floor(1000.0 * reachable) / 1000.0));
+        fmt::format("powder cannot be packed to {:.3g} of the box's volume; {:.3f} can be reached",
+                    spec.packing, reachable / 1000.0));
 }
 
 } // namespace meltscope

@@ -33,21 +33,30 @@ constexpr int dots_per_inch = 72; // a font of n points is n pixels high
 constexpr int png_compression = 2;
 constexpr const char* time_key = "time_s";
 
-struct View {
-    std::vector<std::unique_ptr<Panel>> panels;
-};
+using View = std::vector<std::unique_ptr<Panel>>;
 
 View make_view(const std::string& name) {
     View view;
     if (name == "overview") {
-        view.panels.push_back(make_overview_panel());
+        view.push_back(make_overview_panel());
+    } else if (name == "section") {
+        view.push_back(make_section_panel());
+    } else if (name == "top") {
+        view.push_back(make_top_panel());
+    } else if (name == "pool") {
+        view.push_back(make_pool_panel());
+    } else if (name == "dashboard") {
+        view.push_back(make_overview_panel());
+        view.push_back(make_top_panel());
+        view.push_back(make_section_panel());
+        view.push_back(make_charts_panel());
     } else {
         throw VizError(fmt::format("there is no view '{}'", name));
     }
     return view;
 }
 
-/// Areas of the panels of a view, and of what surrounds them.
+/// Areas of the panels of a view, in the order of make_view, and of what surrounds them.
 struct Layout {
     Rect caption;
     Rect color_bar;
@@ -59,14 +68,26 @@ Layout lay_out(const std::string& view, const std::array<int, 2>& size, double f
     const double height = size[1];
     const double margin = font;
     const double caption_height = 3.6 * font;
-    const double bar_width = 7.4 * font;
+    const double bar_width = 7.6 * font;
     Layout layout;
     layout.caption = {margin, height - 0.5 * margin - caption_height, width - 2.0 * margin, caption_height};
     layout.color_bar = {width - bar_width - margin, 2.0 * margin, bar_width,
                         height - caption_height - 4.0 * margin};
-    const Rect body{margin, margin, width - bar_width - 3.0 * margin, height - caption_height - 2.0 * margin};
-    (void)view;
-    layout.panels = {body};
+    const Rect body{margin, margin, width - bar_width - 3.5 * margin, height - caption_height - 2.5 * margin};
+    if (view != "dashboard") {
+        layout.panels = {body};
+        return layout;
+    }
+    const double charts = 0.36 * body.height;
+    const double right = 0.44 * body.width;
+    const double upper = body.y + charts + margin;
+    const double upper_height = body.height - charts - margin;
+    const double column = body.x + body.width - right;
+    const double top_height = 0.42 * upper_height;
+    layout.panels = {{body.x, upper, body.width - right - margin, upper_height},
+                     {column, upper + upper_height - top_height, right, top_height},
+                     {column, upper, right, upper_height - top_height - margin},
+                     {body.x, body.y, body.width, charts}};
     return layout;
 }
 
@@ -124,7 +145,7 @@ struct FrameRenderer::Impl {
             return found->second;
         }
         View& made = views.emplace(name, make_view(name)).first->second;
-        for (const auto& panel : made.panels) {
+        for (const auto& panel : made) {
             window->AddRenderer(panel->renderer());
         }
         return made;
@@ -192,7 +213,7 @@ vtkSmartPointer<vtkImageData> FrameRenderer::render(const Instant& instant,
 
     View& shown = impl.view(view_name);
     for (auto& [name, view] : impl.views) {
-        for (const auto& panel : view.panels) {
+        for (const auto& panel : view) {
             panel->renderer()->SetDraw(&view == &shown);
         }
     }
@@ -200,8 +221,8 @@ vtkSmartPointer<vtkImageData> FrameRenderer::render(const Instant& instant,
     impl.background->SetBackground(colors.background.data());
     impl.canvas.clear();
     const Layout layout = lay_out(view_name, options.size, picture.font);
-    for (std::size_t i = 0; i < shown.panels.size(); ++i) {
-        shown.panels[i]->update(picture, layout.panels[i], impl.canvas);
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        shown[i]->update(picture, layout.panels[i], impl.canvas);
     }
     draw_caption(impl.canvas, picture, layout.caption);
     draw_color_bar(impl.canvas, picture, layout.color_bar);

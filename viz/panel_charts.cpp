@@ -1,0 +1,161 @@
+#include "viz/annotations.hpp"
+#include "viz/panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <vtkAxis.h>
+#include <vtkChartXY.h>
+#include <vtkContextActor.h>
+#include <vtkContextScene.h>
+#include <vtkDoubleArray.h>
+#include <vtkPen.h>
+#include <vtkPlot.h>
+#include <vtkTable.h>
+#include <vtkTextProperty.h>
+
+namespace meltscope::viz {
+
+namespace {
+
+struct Series {
+    const char* name;
+    double HistoryPoint::*value;
+    double factor; ///< from SI to the chart's unit
+};
+
+/// One chart over time with its heading: what is shown, each word in the colour of its line.
+class TimeChart {
+  public:
+    TimeChart(vtkContextScene* scene, std::string unit, std::vector<Series> series)
+        : unit_(std::move(unit)), series_(std::move(series)) {
+        time_->SetName("time");
+        table_->AddColumn(time_);
+        for (const Series& one : series_) {
+            vtkNew<vtkDoubleArray> column;
+            column->SetName(one.name);
+            table_->AddColumn(column);
+        }
+        for (std::size_t i = 0; i < series_.size(); ++i) {
+            plots_.push_back(chart_->AddPlot(vtkChart::LINE));
+        }
+        chart_->SetAutoSize(false);
+        chart_->SetShowLegend(false);
+        scene->AddItem(chart_);
+    }
+
+    /// `area` in pixels of the picture, `offset` the corner of the scene in it.
+    void update(const Picture& picture, const Rect& area, const Pixel& offset, Canvas& canvas) {
+        const std::vector<HistoryPoint>& history = *picture.history;
+        const auto rows = static_cast<vtkIdType>(history.size());
+        const double last = history.empty() ? 0.0 : history.back().time;
+        const bool milliseconds = last >= 1e-3;
+        table_->SetNumberOfRows(rows);
+        double highest = 0.0;
+        for (vtkIdType row = 0; row < rows; ++row) {
+            const HistoryPoint& point = history[static_cast<std::size_t>(row)];
+            table_->SetValue(row, 0, point.time * (milliseconds ? 1e3 : 1e6));
+            for (std::size_t i = 0; i < series_.size(); ++i) {
+                const double value = point.*(series_[i].value) * series_[i].factor;
+                highest = std::max(highest, value);
+                table_->SetValue(row, static_cast<vtkIdType>(i) + 1, value);
+            }
+        }
+        table_->Modified();
+        for (std::size_t i = 0; i < series_.size(); ++i) {
+            const Rgb& color = picture.theme->series.at(i);
+            plots_[i]->SetVisible(rows > 1);
+            if (rows > 1) {
+                plots_[i]->SetInputData(table_, 0, static_cast<vtkIdType>(i) + 1);
+            }
+            plots_[i]->SetColor(color[0], color[1], color[2]);
+            plots_[i]->SetWidth(static_cast<float>(1.5 * picture.line));
+        }
+        const double top = highest > 0.0 ? 1.08 * highest : 1.0;
+        const double end = std::max(last, 1e-9) * (milliseconds ? 1e3 : 1e6);
+        style_axis(chart_->GetAxis(vtkAxis::BOTTOM), picture, milliseconds ? "time (ms)" : "time (µs)", end,
+                   5);
+        style_axis(chart_->GetAxis(vtkAxis::LEFT), picture, unit_, top, 4);
+
+        const double heading = 1.7 * picture.font;
+        chart_->SetSize(vtkRectf(static_cast<float>(area.x - offset[0]),
+                                 static_cast<float>(area.y - offset[1]), static_cast<float>(area.width),
+                                 static_cast<float>(area.height - heading)));
+        draw_names(picture, area, canvas);
+    }
+
+  private:
+    static void style_axis(vtkAxis* axis, const Picture& picture, const std::string& title, double end,
+                           int ticks) {
+        const Theme& colors = *picture.theme;
+        for (vtkTextProperty* property : {axis->GetLabelProperties(), axis->GetTitleProperties()}) {
+            property->SetColor(colors.muted[0], colors.muted[1], colors.muted[2]);
+            property->SetFontSize(std::max(6, static_cast<int>(std::lround(0.8 * picture.font))));
+            property->SetBold(false);
+        }
+        axis->SetTitle(title);
+        axis->GetPen()->SetColorF(colors.muted[0], colors.muted[1], colors.muted[2]);
+        axis->GetPen()->SetWidth(static_cast<float>(0.6 * picture.line));
+        axis->GetGridPen()->SetColorF(colors.panel_edge[0], colors.panel_edge[1], colors.panel_edge[2]);
+        axis->GetGridPen()->SetWidth(static_cast<float>(0.5 * picture.line));
+        axis->SetBehavior(vtkAxis::FIXED);
+        axis->SetRange(0.0, end);
+        vtkNew<vtkDoubleArray> positions;
+        for (const double tick : nice_ticks(0.0, end, ticks)) {
+            positions->InsertNextValue(tick);
+        }
+        axis->SetCustomTickPositions(positions);
+    }
+
+    void draw_names(const Picture& picture, const Rect& area, Canvas& canvas) const {
+        TextStyle style;
+        style.size = 0.9 * picture.font;
+        style.vertical = Align::high;
+        double x = area.x + 0.6 * picture.font;
+        for (std::size_t i = 0; i < series_.size(); ++i) {
+            style.color = picture.theme->series.at(i);
+            canvas.text({x, area.y + area.height - 0.3 * picture.font}, series_[i].name, style);
+            x += Canvas::extent(series_[i].name, style)[0] + picture.font;
+        }
+    }
+
+    std::string unit_;
+    std::vector<Series> series_;
+    vtkNew<vtkChartXY> chart_;
+    vtkNew<vtkTable> table_;
+    vtkNew<vtkDoubleArray> time_;
+    std::vector<vtkPlot*> plots_;
+};
+
+/// Pool size and laser power over time, so far.
+class ChartsPanel : public Panel {
+  public:
+    ChartsPanel() { renderer_->AddActor(actor_); }
+
+    void update(const Picture& picture, const Rect& area, Canvas& canvas) override {
+        place(picture, area);
+        const Pixel corner{area.x, area.y};
+        const double gap = picture.font;
+        const double half = 0.5 * (area.width - gap);
+        pool_.update(picture, {area.x, area.y, half, area.height}, corner, canvas);
+        power_.update(picture, {area.x + half + gap, area.y, half, area.height}, corner, canvas);
+    }
+
+  private:
+    vtkNew<vtkContextActor> actor_;
+    TimeChart pool_{actor_->GetScene(),
+                    "µm",
+                    {{"pool length", &HistoryPoint::length, 1e6},
+                     {"width", &HistoryPoint::width, 1e6},
+                     {"depth", &HistoryPoint::depth, 1e6}}};
+    TimeChart power_{actor_->GetScene(), "W", {{"laser power", &HistoryPoint::power, 1.0}}};
+};
+
+} // namespace
+
+std::unique_ptr<Panel> make_charts_panel() {
+    return std::make_unique<ChartsPanel>();
+}
+
+} // namespace meltscope::viz

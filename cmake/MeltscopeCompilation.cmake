@@ -1,7 +1,8 @@
 # One interface target holds how every part of meltscope is compiled.
 add_library(meltscope_compilation INTERFACE)
 target_compile_features(meltscope_compilation INTERFACE cxx_std_20)
-target_compile_options(meltscope_compilation INTERFACE -Wall -Wextra -Wshadow -Wno-psabi)
+target_compile_options(meltscope_compilation INTERFACE -Wall -Wextra -Wshadow -Wno-psabi
+                       -Wno-maybe-uninitialized) # GCC 12 sees it in its own AVX-512 headers
 if(MELTSCOPE_WARNINGS_AS_ERRORS)
   target_compile_options(meltscope_compilation INTERFACE -Werror)
 endif()

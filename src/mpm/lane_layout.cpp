@@ -95,7 +95,9 @@ BinPlace bin_place(const Grid& grid, const Vec3& point) {
             throw std::out_of_range(fmt::format("the point ({}, {}, {}) m lies outside the domain", point[0], point[1],
                                                 point[2]));
         place.node[axis] = std::int32_t(nearest);
-        place.offset[axis] = cells_in - nearest;
+        const double offset = cells_in - nearest;
+        // On the border exactly, the third node's weight is exactly zero and it gets no mass from round-off.
+        place.offset[axis] = std::abs(offset + 0.5) <= border_tolerance ? -0.5 : offset;
     }
     return place;
 }

@@ -31,6 +31,13 @@ class Drape {
     Drape(const Geometry& geometry, const Vec3& beam_direction)
         : geometry_(geometry), vertical_(std::abs(beam_direction.z()) > 0.9) {}
 
+    /// False beside the domain, where a path may run but nothing is to be seen.
+    bool covers(const Vec3& point) const {
+        const Vec3 upper = upper_corner(geometry_.nodes);
+        return (point.head<2>().array() >= geometry_.nodes.origin.head<2>().array()).all() &&
+               (point.head<2>().array() <= upper.head<2>().array()).all();
+    }
+
     Vec3 operator()(const Vec3& point) const {
         Vec3 laid = point;
         if (vertical_) {
@@ -38,7 +45,7 @@ class Drape {
                 laid.z() = *height;
             }
         }
-        laid.z() += 0.3 * geometry_.nodes.spacing;
+        laid.z() += 0.15 * geometry_.nodes.spacing;
         return laid;
     }
 
@@ -66,7 +73,8 @@ std::vector<std::vector<Vec3>> drape_path(const std::vector<Vec3>& corners, cons
             const double from = static_cast<double>(piece) / pieces;
             const double to = static_cast<double>(piece + 1) / pieces;
             const double middle = left - length * 0.5 * (from + to);
-            if (dash > 0.0 && std::fmod(middle, 2.0 * dash) > dash) {
+            const bool gap = dash > 0.0 && std::fmod(middle, 2.0 * dash) > dash;
+            if (gap || !drape.covers(corners[i - 1] + 0.5 * (from + to) * (corners[i] - corners[i - 1]))) {
                 pen_down = false;
                 continue;
             }
@@ -101,10 +109,9 @@ std::vector<Vec3> circle(const BeamSnapshot& beam, const Geometry& geometry) {
 }
 
 /// Columns of light that fade upwards, one a beam that is on.
-vtkSmartPointer<vtkPolyData> make_light(const Picture& picture) {
+vtkSmartPointer<vtkPolyData> make_light(const Picture& picture, double height) {
     constexpr int sides = 36;
     const Geometry& geometry = *picture.instant->geometry;
-    const double height = 0.16 * (geometry.upper - geometry.lower).norm();
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> quads;
     vtkNew<vtkUnsignedCharArray> colors;
@@ -146,12 +153,9 @@ SurfaceActor::SurfaceActor(vtkRenderer* renderer) {
     mapper_->SetUseLookupTableScalarRange(true);
     mapper_->SetResolveCoincidentTopologyToPolygonOffset();
     actor_->SetMapper(mapper_);
-    // A face turned up shows the field's own colour, others a darker one. The broad gloss keeps form visible
-    // where the colour map is black.
+    // A face turned up shows the field's own colour, others a darker one.
     actor_->GetProperty()->SetAmbient(0.55);
     actor_->GetProperty()->SetDiffuse(0.45);
-    actor_->GetProperty()->SetSpecular(0.14);
-    actor_->GetProperty()->SetSpecularPower(3.0);
     renderer->AddActor(actor_);
 }
 
@@ -208,8 +212,8 @@ vtkSmartPointer<vtkPolyData> make_box_edges(const Vec3& lower, const Vec3& upper
     return make_lines(edges);
 }
 
-TrackActors::TrackActors(vtkRenderer* renderer, bool beams)
-    : beams_(beams), path_to_come_(renderer), path_done_(renderer), liquidus_(renderer), spots_(renderer) {
+TrackActors::TrackActors(vtkRenderer* renderer)
+    : path_to_come_(renderer), path_done_(renderer), liquidus_(renderer), spots_(renderer) {
     light_->SetMapper(light_mapper_);
     light_->GetProperty()->LightingOff();
     light_->ForceTranslucentOn();
@@ -217,12 +221,12 @@ TrackActors::TrackActors(vtkRenderer* renderer, bool beams)
     renderer->AddActor(light_);
 }
 
-void TrackActors::update(const Picture& picture) {
+void TrackActors::update(const Picture& picture, double view_size, double beam_height) {
     const Snapshot& snapshot = *picture.instant->snapshot;
     const Geometry& geometry = *picture.instant->geometry;
     const Theme& colors = *picture.theme;
     const double step = 2.0 * geometry.nodes.spacing;
-    const double dash = 0.008 * (geometry.upper - geometry.lower).norm();
+    const double dash = 0.008 * view_size;
     std::vector<std::vector<Vec3>> done;
     std::vector<std::vector<Vec3>> to_come;
     std::vector<std::vector<Vec3>> rings;
@@ -239,11 +243,9 @@ void TrackActors::update(const Picture& picture) {
     path_to_come_.update(make_lines(to_come), colors.path_to_come, 0.9 * picture.line);
     liquidus_.update(picture.instant->pool.line, colors.liquidus, 1.3 * picture.line);
     spots_.update(make_lines(rings), colors.beam, 1.3 * picture.line);
-    if (beams_) {
-        const auto light = make_light(picture);
-        light_mapper_->SetInputData(light);
-        light_->SetVisibility(light->GetNumberOfCells() > 0);
-    }
+    const auto light = make_light(picture, beam_height);
+    light_mapper_->SetInputData(light);
+    light_->SetVisibility(beam_height > 0.0 && light->GetNumberOfCells() > 0);
 }
 
 } // namespace meltscope::viz

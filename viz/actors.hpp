@@ -47,12 +47,12 @@ vtkSmartPointer<vtkPolyData> make_box_edges(const Vec3& lower, const Vec3& upper
 /// What lies on the material: liquidus line, scan path, beam spots and beams.
 class TrackActors {
   public:
-    /// `beams`: also the light above the spot.
-    TrackActors(vtkRenderer* renderer, bool beams);
-    void update(const Picture& picture);
+    explicit TrackActors(vtkRenderer* renderer);
+    /// `view_size`: what the view spans, m, for the length of dashes; `beam_height`: of the light above a
+    /// spot, m, 0 for none.
+    void update(const Picture& picture, double view_size, double beam_height);
 
   private:
-    bool beams_;
     LineActor path_to_come_;
     LineActor path_done_;
     LineActor liquidus_;

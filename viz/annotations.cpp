@@ -26,8 +26,7 @@ std::string three_digits(double value) {
     return fmt::format("{:.{}f}", value, size >= 100.0 ? 0 : size >= 10.0 ? 1 : 2);
 }
 
-std::string format_time(double seconds, double smallest_digit) {
-    (void)smallest_digit;
+std::string format_time(double seconds) {
     if (seconds >= 1.0) {
         return fmt::format("{:.4f} s", seconds);
     }
@@ -98,7 +97,7 @@ std::vector<double> nice_ticks(double low, double high, int wanted) {
         step = round_down(step * 2.6);
     }
     for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1.0) {
-        ticks.push_back(i * step);
+        ticks.push_back(i * step + 0.0); // no minus zero
     }
     return ticks;
 }
@@ -113,7 +112,7 @@ void draw_caption(Canvas& canvas, const Picture& picture, const Rect& area) {
 
     TextStyle time = style;
     time.horizontal = Align::high;
-    const std::string clock = "t = " + format_time(snapshot.time, snapshot.dt);
+    const std::string clock = "t = " + format_time(snapshot.time);
     canvas.text({area.x + area.width, upper}, clock, time);
 
     style.bold = true;
@@ -127,7 +126,8 @@ void draw_caption(Canvas& canvas, const Picture& picture, const Rect& area) {
     const bool molten = !snapshot.pools.empty() && snapshot.pools.front().length > 0.0;
     style.max_width = area.width;
     canvas.text({area.x, lower},
-                describe_beams(snapshot) + "      " + pool + (molten ? "  (length × width × depth)" : ""),
+                fmt::format("{}      {}{}      peak {:.0f} K", describe_beams(snapshot), pool,
+                            molten ? " (length × width × depth)" : "", snapshot.peak_temperature),
                 style);
 }
 
@@ -161,9 +161,10 @@ void draw_color_bar(Canvas& canvas, const Picture& picture, const Rect& area) {
         double rgb[3];
         picture.colors->GetColor(high, rgb);
         const double top = bar.y + bar.height;
-        canvas.triangle(
-            {{{bar.x, top}, {bar.x + bar.width, top}, {bar.x + 0.5 * bar.width, top + 0.7 * font}}},
-            {rgb[0], rgb[1], rgb[2]});
+        const std::array<Pixel, 3> tip{
+            {{bar.x, top}, {bar.x + 0.5 * bar.width, top + 0.7 * font}, {bar.x + bar.width, top}}};
+        canvas.triangle(tip, {rgb[0], rgb[1], rgb[2]});
+        canvas.line({tip.begin(), tip.end()}, picture.theme->muted, 0.6 * picture.line);
     }
 
     const double text_x = bar.x + bar.width + 0.55 * font;
@@ -220,9 +221,7 @@ void draw_scale_bar(Canvas& canvas, const Picture& picture, Pixel lower_left, do
     TextStyle style;
     style.size = picture.font;
     style.color = picture.theme->text;
-    style.horizontal = Align::middle;
-    style.vertical = Align::low;
-    canvas.text({x + 0.5 * width, y + 0.45 * picture.font}, format_length(length), style);
+    canvas.text({x + width + 0.6 * picture.font, y}, format_length(length), style);
 }
 
 void draw_heading(Canvas& canvas, const Picture& picture, const Rect& area, const std::string& words) {

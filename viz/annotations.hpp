@@ -18,7 +18,7 @@ std::vector<double> nice_ticks(double low, double high, int wanted);
 void draw_caption(Canvas& canvas, const Picture& picture, const Rect& area);
 /// The colours with ticks in the field's unit, and for temperature marks at solidus and liquidus.
 void draw_color_bar(Canvas& canvas, const Picture& picture, const Rect& area);
-/// A horizontal bar of a round length with its label above; `pixels_per_metre` holds for the panel.
+/// A horizontal bar of a round length with its label behind it; `pixels_per_metre` holds for the panel.
 void draw_scale_bar(Canvas& canvas, const Picture& picture, Pixel lower_left, double pixels_per_metre,
                     double max_pixels);
 /// A small heading in the upper left corner of a panel.

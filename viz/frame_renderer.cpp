@@ -78,12 +78,12 @@ Layout lay_out(const std::string& view, const std::array<int, 2>& size, double f
         layout.panels = {body};
         return layout;
     }
-    const double charts = 0.36 * body.height;
-    const double right = 0.44 * body.width;
+    const double charts = 0.35 * body.height;
+    const double right = 0.45 * body.width;
     const double upper = body.y + charts + margin;
     const double upper_height = body.height - charts - margin;
     const double column = body.x + body.width - right;
-    const double top_height = 0.42 * upper_height;
+    const double top_height = 0.40 * upper_height;
     layout.panels = {{body.x, upper, body.width - right - margin, upper_height},
                      {column, upper + upper_height - top_height, right, top_height},
                      {column, upper, right, upper_height - top_height - margin},

@@ -68,7 +68,7 @@ Panel::Panel() {
     light->SetLightTypeToSceneLight();
     light->SetPosition(-0.35, -0.45, 1.0);
     light->SetFocalPoint(0.0, 0.0, 0.0);
-    light->SetIntensity(1.1);
+    light->SetIntensity(1.15);
     renderer_->AddLight(light);
 }
 

@@ -48,13 +48,15 @@ class TimeChart {
     /// `area` in pixels of the picture, `offset` the corner of the scene in it.
     void update(const Picture& picture, const Rect& area, const Pixel& offset, Canvas& canvas) {
         const std::vector<HistoryPoint>& history = *picture.history;
-        const auto rows = static_cast<vtkIdType>(history.size());
+        // A lone point is given twice: a chart without a line shows no axes either.
+        const auto rows =
+            history.empty() ? 0 : std::max<vtkIdType>(2, static_cast<vtkIdType>(history.size()));
         const double last = history.empty() ? 0.0 : history.back().time;
         const bool milliseconds = last >= 1e-3;
         table_->SetNumberOfRows(rows);
         double highest = 0.0;
         for (vtkIdType row = 0; row < rows; ++row) {
-            const HistoryPoint& point = history[static_cast<std::size_t>(row)];
+            const HistoryPoint& point = history[std::min(static_cast<std::size_t>(row), history.size() - 1)];
             table_->SetValue(row, 0, point.time * (milliseconds ? 1e3 : 1e6));
             for (std::size_t i = 0; i < series_.size(); ++i) {
                 const double value = point.*(series_[i].value) * series_[i].factor;
@@ -65,8 +67,8 @@ class TimeChart {
         table_->Modified();
         for (std::size_t i = 0; i < series_.size(); ++i) {
             const Rgb& color = picture.theme->series.at(i);
-            plots_[i]->SetVisible(rows > 1);
-            if (rows > 1) {
+            plots_[i]->SetVisible(rows > 0);
+            if (rows > 0) {
                 plots_[i]->SetInputData(table_, 0, static_cast<vtkIdType>(i) + 1);
             }
             plots_[i]->SetColor(color[0], color[1], color[2]);
@@ -75,10 +77,12 @@ class TimeChart {
         const double top = highest > 0.0 ? 1.08 * highest : 1.0;
         const double end = std::max(last, 1e-9) * (milliseconds ? 1e3 : 1e6);
         style_axis(chart_->GetAxis(vtkAxis::BOTTOM), picture, milliseconds ? "time (ms)" : "time (µs)", end,
-                   5);
+                   4);
         style_axis(chart_->GetAxis(vtkAxis::LEFT), picture, unit_, top, 4);
 
-        const double heading = 1.7 * picture.font;
+        // Room for half of the last number, which stands below the end of the axis.
+        chart_->SetHiddenAxisBorder(static_cast<int>(std::lround(1.2 * picture.font)));
+        const double heading = 1.1 * picture.font;
         chart_->SetSize(vtkRectf(static_cast<float>(area.x - offset[0]),
                                  static_cast<float>(area.y - offset[1]), static_cast<float>(area.width),
                                  static_cast<float>(area.height - heading)));
@@ -99,6 +103,8 @@ class TimeChart {
         axis->GetPen()->SetWidth(static_cast<float>(0.6 * picture.line));
         axis->GetGridPen()->SetColorF(colors.panel_edge[0], colors.panel_edge[1], colors.panel_edge[2]);
         axis->GetGridPen()->SetWidth(static_cast<float>(0.5 * picture.line));
+        axis->SetLabelOffset(static_cast<float>(0.5 * picture.font));
+        axis->SetTickLength(static_cast<float>(0.3 * picture.font));
         axis->SetBehavior(vtkAxis::FIXED);
         axis->SetRange(0.0, end);
         vtkNew<vtkDoubleArray> positions;

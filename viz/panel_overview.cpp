@@ -16,10 +16,10 @@ class OverviewPanel : public Panel {
         walls_.update(picture.walls, picture);
         edges_.update(make_box_edges(geometry.lower, geometry.upper), picture.theme->muted,
                       0.5 * picture.line);
-        track_.update(picture);
 
         // The longer side faces the viewer.
         const Vec3 size = geometry.upper - geometry.lower;
+        track_.update(picture, size.norm(), 0.16 * size.norm());
         const bool along_x = size.x() >= size.y();
         const Vec3 along = along_x ? Vec3::UnitX() : Vec3::UnitY();
         const Vec3 front = along_x ? Vec3(-Vec3::UnitY()) : Vec3::UnitX();
@@ -63,7 +63,7 @@ class OverviewPanel : public Panel {
     SurfaceActor walls_{renderer_};
     LineActor edges_{renderer_};
     LineActor scale_{renderer_};
-    TrackActors track_{renderer_, true};
+    TrackActors track_{renderer_};
 };
 
 } // namespace

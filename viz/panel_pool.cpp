@@ -4,6 +4,7 @@
 #include "viz/section.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <vtkPlane.h>
 #include <vtkProperty.h>
@@ -18,6 +19,8 @@ class PoolPanel : public Panel {
   public:
     PoolPanel() {
         section_.actor()->GetProperty()->LightingOff();
+        // The bowl looks down, away from the light above.
+        isotherm_.actor()->GetProperty()->SetAmbient(0.85);
         for (SurfaceActor* part : {&surface_, &walls_}) {
             part->mapper()->AddClippingPlane(far_half_);
         }
@@ -27,7 +30,9 @@ class PoolPanel : public Panel {
     }
 
     void update(const Picture& picture, const Rect& area, Canvas& canvas) override {
-        place(picture, area);
+        const double strip = 2.2 * picture.font;
+        const Rect scene{area.x, area.y + strip, area.width, area.height - strip};
+        place(picture, scene);
         extent_.update(picture);
         const Snapshot& snapshot = *picture.instant->snapshot;
         const Geometry& geometry = *picture.instant->geometry;
@@ -35,8 +40,10 @@ class PoolPanel : public Panel {
         // The viewer stands where the scan goes to the right.
         const Vec3 away = plane.across();
         for (const auto& [cut, side] : {std::pair{far_half_.Get(), 1.0}, std::pair{near_half_.Get(), -1.0}}) {
-            cut->SetOrigin(plane.origin.data());
+            // The far half reaches a little over the cut, so that no crack shows along its edge.
+            const Vec3 origin = plane.origin - (side > 0.0 ? 0.05 * geometry.nodes.spacing : 0.0) * away;
             const Vec3 normal = side * away;
+            cut->SetOrigin(origin.data());
             cut->SetNormal(normal.data());
         }
         surface_.update(picture.surface, picture);
@@ -48,36 +55,37 @@ class PoolPanel : public Panel {
                                          picture.instant->pool.isotherm->GetNumberOfCells() > 0);
         }
 
-        const double bottom = std::max(plane.origin.z() - 2.1 * extent_.depth, geometry.lower.z());
+        const double bottom = std::max(plane.origin.z() - 1.5 * extent_.depth, geometry.lower.z());
         const std::array<double, 4> stretch{-4.0 * extent_.length, 3.0 * extent_.length, geometry.lower.z(),
                                             geometry.upper.z()};
         const auto section = make_section(picture, plane, stretch);
         section_.update(section, picture);
         section_.actor()->SetVisibility(section->GetNumberOfCells() > 0);
         section_.actor()->SetUserMatrix(plane.matrix());
-        solidus_.update(section_isotherms(section, {snapshot.solidus}), picture.theme->solidus, picture.line);
+        solidus_.update(section_lines(section, "temperature", {snapshot.solidus}), picture.theme->solidus,
+                        picture.line);
         solidus_.actor()->SetUserMatrix(plane.matrix());
-        track_.update(picture);
+        edge_.update(section_surface(section, snapshot.nodes), picture.theme->muted, 0.7 * picture.line);
+        edge_.actor()->SetUserMatrix(plane.matrix());
+        track_.update(picture, 1.6 * extent_.length, 0.22 * extent_.length);
 
         std::vector<Vec3> corners;
-        for (const double s : {-1.12 * extent_.length, 0.3 * extent_.length}) {
+        for (const double s : {-1.08 * extent_.length, 0.27 * extent_.length}) {
             for (const double side : {-0.5 * extent_.width, 0.55 * extent_.width}) {
-                for (const double z : {bottom, plane.origin.z() + 0.1 * extent_.depth}) {
+                for (const double z : {bottom, plane.origin.z() + 0.7 * extent_.depth}) {
                     corners.push_back(plane.point(s, z) + side * away);
                 }
             }
         }
         fit_camera(renderer_->GetActiveCamera(), corners, away + 0.22 * plane.along - 0.5 * Vec3::UnitZ(),
-                   Vec3::UnitZ(), area.width / area.height);
+                   Vec3::UnitZ(), scene.width / scene.height);
         renderer_->ResetCameraClippingRange();
 
-        // Drawn along the cut's lower edge in sight.
-        const double bar = round_down(0.3 * extent_.length);
-        const Pixel from = to_pixel(picture, area, plane.point(0.0, plane.origin.z()));
-        const Pixel to = to_pixel(picture, area, plane.point(bar, plane.origin.z()));
-        const double pixels_per_metre = std::hypot(to[0] - from[0], to[1] - from[1]) / bar;
-        (void)canvas;
-        (void)pixels_per_metre;
+        const double unit = 0.1 * extent_.length;
+        const Pixel from = to_pixel(picture, scene, plane.origin);
+        const Pixel to = to_pixel(picture, scene, plane.origin + unit * plane.along);
+        draw_scale_bar(canvas, picture, {scene.x, area.y + 0.7 * picture.font},
+                       std::hypot(to[0] - from[0], to[1] - from[1]) / unit, 0.25 * scene.width);
     }
 
   private:
@@ -90,7 +98,8 @@ class PoolPanel : public Panel {
     SurfaceActor isotherm_{renderer_};
     SurfaceActor cap_{renderer_};
     LineActor solidus_{renderer_};
-    TrackActors track_{renderer_, true};
+    LineActor edge_{renderer_};
+    TrackActors track_{renderer_};
 };
 
 } // namespace

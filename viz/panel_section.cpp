@@ -28,10 +28,11 @@ vtkSmartPointer<vtkPolyData> make_band(const BeamSnapshot& beam, const SectionPl
     colors->SetNumberOfComponents(4);
     const double z = plane.origin.z();
     const double r = beam.spot_radius;
-    for (const auto& [s, rise] : {std::array{-r, 0.0}, std::array{r, 0.0}, std::array{1.5 * r, height},
-                                  std::array{-1.5 * r, height}}) {
-        points->InsertNextPoint(s + lean * rise, z + rise, 0.0);
-        colors->InsertNextTuple4(255 * color[0], 255 * color[1], 255 * color[2], rise > 0.0 ? 0 : 130);
+    // Behind the material, and from a little below the spot, so that no gap shows over an uneven surface.
+    for (const auto& [s, rise] :
+         {std::array{-r, -r}, std::array{r, -r}, std::array{1.5 * r, height}, std::array{-1.5 * r, height}}) {
+        points->InsertNextPoint(s + lean * rise, z + rise, -0.1 * height);
+        colors->InsertNextTuple4(255 * color[0], 255 * color[1], 255 * color[2], rise > 0.0 ? 0 : 150);
     }
     const vtkIdType corners[4] = {0, 1, 2, 3};
     quad->InsertNextCell(4, corners);
@@ -54,7 +55,7 @@ class SectionPanel : public Panel {
     }
 
     void update(const Picture& picture, const Rect& area, Canvas& canvas) override {
-        const double strip = 2.6 * picture.font;
+        const double strip = 2.2 * picture.font;
         const Rect scene{area.x, area.y + strip, area.width, area.height - strip};
         place(picture, scene);
         const Snapshot& snapshot = *picture.instant->snapshot;
@@ -66,16 +67,21 @@ class SectionPanel : public Panel {
         const auto section = make_section(picture, plane, window);
         material_.update(section, picture);
         material_.actor()->SetVisibility(section->GetNumberOfCells() > 0);
+        surface_.update(section_surface(section, snapshot.nodes), picture.theme->muted, 0.7 * picture.line);
+        // As many isotherms as can be told apart.
+        const int line_count = std::clamp(static_cast<int>(scene.height / (2.6 * picture.font)), 3, 8);
         std::vector<double> levels;
-        for (const double level : nice_ticks(picture.range[0], picture.range[1], 8)) {
+        for (const double level : nice_ticks(picture.range[0], picture.range[1], line_count)) {
             if (picture.field == "temperature" && level > picture.range[0] &&
                 level < snapshot.solidus - 60.0) {
                 levels.push_back(level);
             }
         }
-        isotherms_.update(section_isotherms(section, levels), picture.theme->solidus, 0.6 * picture.line);
-        solidus_.update(section_isotherms(section, {snapshot.solidus}), picture.theme->solidus, picture.line);
-        const auto liquidus = section_isotherms(section, {snapshot.liquidus});
+        isotherms_.update(section_lines(section, "temperature", levels), picture.theme->solidus,
+                          0.6 * picture.line);
+        solidus_.update(section_lines(section, "temperature", {snapshot.solidus}), picture.theme->solidus,
+                        picture.line);
+        const auto liquidus = section_lines(section, "temperature", {snapshot.liquidus});
         liquidus_.update(liquidus, picture.theme->liquidus, 1.5 * picture.line);
 
         const BeamSnapshot* beam = leading_beam(snapshot);
@@ -87,7 +93,7 @@ class SectionPanel : public Panel {
         }
 
         const double pixels_per_metre = scene.height / (window[3] - window[2]);
-        draw_scale_bar(canvas, picture, {scene.x, area.y + 0.5 * picture.font}, pixels_per_metre,
+        draw_scale_bar(canvas, picture, {scene.x, area.y + 0.7 * picture.font}, pixels_per_metre,
                        0.25 * scene.width);
         label_isotherms(picture, scene, section, levels, canvas);
     }
@@ -142,28 +148,30 @@ class SectionPanel : public Panel {
         style.vertical = Align::high;
         std::vector<Rect> taken;
         for (const auto& [level, words] : wanted) {
-            const auto line = section_isotherms(section, {level});
-            if (line->GetNumberOfPoints() < 8) {
-                continue;
-            }
+            const auto line = section_lines(section, "temperature", {level});
             double lowest[3] = {0.0, 1e30, 0.0};
             for (vtkIdType i = 0; i < line->GetNumberOfPoints(); ++i) {
                 double point[3];
                 line->GetPoint(i, point);
-                if (point[1] < lowest[1]) {
+                const double across = to_pixel(picture, scene, Vec3(point[0], point[1], 0.0))[0] - scene.x;
+                if (point[1] < lowest[1] && across > 0.07 * scene.width && across < 0.93 * scene.width) {
                     std::copy(point, point + 3, lowest);
                 }
             }
+            if (lowest[1] > 1e29) {
+                continue;
+            }
             const Pixel at = to_pixel(picture, scene, Vec3(lowest[0], lowest[1], 0.0));
             const auto [width, height] = Canvas::extent(words, style);
-            const Rect box{at[0] - 0.5 * width - 2.0, at[1] - 0.25 * picture.font - height - 1.0, width + 4.0,
-                           height + 2.0};
+            const Rect box{at[0] - 0.5 * width - 3.0, at[1] - 0.25 * picture.font - height - 2.0, width + 6.0,
+                           height + 4.0};
             const bool fits = box.x > scene.x && box.x + box.width < scene.x + scene.width && box.y > scene.y;
             const bool free = std::none_of(taken.begin(), taken.end(), [&](const Rect& other) {
                 return box.x < other.x + other.width && box.x + box.width > other.x &&
                        box.y < other.y + other.height && box.y + box.height > other.y;
             });
             if (fits && free) {
+                canvas.fill(box, {0.0, 0.0, 0.0}, 0.35);
                 canvas.text({at[0], at[1] - 0.25 * picture.font}, words, style);
                 taken.push_back(box);
             }
@@ -172,6 +180,7 @@ class SectionPanel : public Panel {
 
     PoolExtent extent_;
     SurfaceActor material_{renderer_};
+    LineActor surface_{renderer_};
     LineActor isotherms_{renderer_};
     LineActor solidus_{renderer_};
     LineActor liquidus_{renderer_};

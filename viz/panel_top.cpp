@@ -13,15 +13,15 @@ class TopPanel : public Panel {
   public:
     void update(const Picture& picture, const Rect& area, Canvas& canvas) override {
         // The scale bar has a strip of its own below the scene.
-        const double strip = 2.6 * picture.font;
+        const double strip = 2.2 * picture.font;
         const Rect scene{area.x, area.y + strip, area.width, area.height - strip};
         place(picture, scene);
         surface_.update(picture.surface, picture);
         walls_.update(picture.walls, picture);
-        track_.update(picture);
 
         const Geometry& geometry = *picture.instant->geometry;
         const Vec3 size = geometry.upper - geometry.lower;
+        track_.update(picture, size.norm(), 0.0);
         const Vec3 center = 0.5 * (geometry.upper + geometry.lower);
         const bool turned = size.y() > size.x();
         const double across = std::max(size.x(), size.y());
@@ -42,14 +42,14 @@ class TopPanel : public Panel {
         const double pixels_per_metre = scene.height / (2.0 * half_height);
         const double left = scene.x + 0.5 * (scene.width - across * pixels_per_metre);
         const double bottom = scene.y + 0.5 * (scene.height - upright * pixels_per_metre);
-        draw_scale_bar(canvas, picture, {left, bottom - 0.85 * strip}, pixels_per_metre,
+        draw_scale_bar(canvas, picture, {left, bottom - 0.55 * strip}, pixels_per_metre,
                        0.2 * across * pixels_per_metre);
     }
 
   private:
     SurfaceActor surface_{renderer_};
     SurfaceActor walls_{renderer_};
-    TrackActors track_{renderer_, false};
+    TrackActors track_{renderer_};
 };
 
 } // namespace

@@ -112,23 +112,28 @@ vtkSmartPointer<vtkPolyData> make_section(const Picture& picture, const SectionP
     return section;
 }
 
-vtkSmartPointer<vtkPolyData> section_isotherms(vtkPolyData* section,
-                                               const std::vector<double>& temperatures) {
+vtkSmartPointer<vtkPolyData> section_lines(vtkPolyData* section, const char* array,
+                                           const std::vector<double>& values) {
     auto lines = vtkSmartPointer<vtkPolyData>::New();
     if (section->GetNumberOfCells() == 0) {
         return lines;
     }
     vtkNew<vtkPolyData> input;
     input->ShallowCopy(section);
-    input->GetPointData()->SetActiveScalars("temperature");
+    input->GetPointData()->SetActiveScalars(array);
     vtkNew<vtkContourFilter> contour;
     contour->SetInputData(input);
-    for (std::size_t i = 0; i < temperatures.size(); ++i) {
-        contour->SetValue(static_cast<int>(i), temperatures[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        contour->SetValue(static_cast<int>(i), values[i]);
     }
     contour->Update();
     lines->ShallowCopy(contour->GetOutput());
     return lines;
+}
+
+vtkSmartPointer<vtkPolyData> section_surface(vtkPolyData* section, const NodeLattice& nodes) {
+    // The section ends where the distance is zero; just inside, every piece of the edge is found.
+    return section_lines(section, "boundary", {-0.02 * nodes.spacing});
 }
 
 void PoolExtent::update(const Picture& picture) {

@@ -31,12 +31,16 @@ SectionPlane track_plane(const Picture& picture);
 std::array<double, 2> stretch_inside(const SectionPlane& plane, const NodeLattice& nodes);
 
 /// The material in a window of the plane, as polygons at (s, z, 0) with the picture's field as scalars and
-/// the array `temperature`; window = s low, s high, z low, z high in m.
+/// the array `temperature` and `boundary` (signed distance); window = s low, s high, z low, z high in m.
 vtkSmartPointer<vtkPolyData> make_section(const Picture& picture, const SectionPlane& plane,
                                           const std::array<double, 4>& window);
 
-/// Lines of equal temperature on a section.
-vtkSmartPointer<vtkPolyData> section_isotherms(vtkPolyData* section, const std::vector<double>& temperatures);
+/// Lines where an array of a section has the given values.
+vtkSmartPointer<vtkPolyData> section_lines(vtkPolyData* section, const char* array,
+                                           const std::vector<double>& values);
+
+/// Where the free surface crosses the section.
+vtkSmartPointer<vtkPolyData> section_surface(vtkPolyData* section, const NodeLattice& nodes);
 
 /// What a view that follows the pool has to show; grows with the pool and never shrinks, so that pictures of
 /// a movie keep their scale.

@@ -18,10 +18,11 @@ struct StepOptions {
 void diffuse(const Grid& grid, const Particles& particles, const std::vector<EquationOfState>& materials,
              const StepOptions& options, double dt, Nodes& nodes);
 
-/// Step 6: e_i* = e_i + D_i / m_i, then the faces of fixed temperature; ghosts follow. Returns the energy in J that
-/// those faces conducted into the material. Leaves D_i and (m e)_i zero and prepares the blend of step 7.
-double update_grid_energy(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
-                          const StepOptions& options, Nodes& nodes);
+/// Step 6: e_i* = e_i + D_i / m_i, then the faces of fixed temperature; ghosts follow. With the affine transfer D_i is
+/// first freed of what lumping the mass does to it. Returns the energy in J that those faces conducted into the
+/// material. Leaves D_i and (m e)_i zero and prepares the blend of step 7.
+double update_grid_energy(const Grid& grid, const Particles& particles, const std::vector<EquationOfState>& materials,
+                          const Boundary& boundary, const StepOptions& options, double dt, Nodes& nodes);
 
 /// Step 7, G2P, and step 3 of the next step in the same pass:
 /// e_p <- (1 - b) [e_p + sum_i N_ip (e_i* - e_i)] + b sum_i N_ip e_i*, g_p = sum_i e_i* grad N_ip,

@@ -90,7 +90,7 @@ EquationOfState make_equation_of_state(const Material& m) {
 
 double max_diffusivity(const EquationOfState& eos, double coldest, double hottest) {
     double most = 0.0;
-    const int samples = 2000;
+    const int samples = 16 + int((hottest - coldest) / 4.0);
     for (int i = 0; i <= samples; ++i) {
         const double t = coldest + (hottest - coldest) * i / samples;
         most = std::max(most, eos.conductivity(t) / (eos.density * eos.heat_capacity(t)));

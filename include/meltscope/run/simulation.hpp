@@ -89,8 +89,12 @@ double largest_step(const Simulation& simulation, StepLimit& limit);
 /// exactly. Steps 3 to 7 of the method; see simulation.cpp.
 void advance(Simulation& simulation, double target);
 
-/// Tells the simulation that lasers' directions or the level-set options were changed.
+/// Makes the free surface and the light maps anew after a laser's direction, the lasers or the level-set options were
+/// changed.
 void update_geometry(Simulation& simulation);
+
+/// Makes the nodes anew after face conditions were changed.
+void update_boundary(Simulation& simulation);
 
 /// Adds particles (a powder layer) at their own energies; ids must go on from the last. The energies of those that are
 /// there are untouched. Throws std::out_of_range if one lies outside the box.

@@ -88,6 +88,14 @@ std::vector<double> node_temperatures(const Simulation& s) {
     return without_padding(s.grid, values_at_nodes(s.grid, std::move(t)));
 }
 
+double hottest_inside(const std::vector<double>& phi, const std::vector<double>& temperature) {
+    double hottest = 0.0;
+    for (std::size_t i = 0; i < phi.size(); ++i)
+        if (phi[i] <= 0.0)
+            hottest = std::max(hottest, temperature[i]);
+    return hottest;
+}
+
 BeamSnapshot beam_snapshot(const Laser& laser, double time) {
     BeamSnapshot b;
     double power = 0.0;
@@ -179,7 +187,7 @@ Snapshot take_snapshot(const Simulation& s, ParticleSelection particles) {
     snapshot.phi_hat = share(without_padding(s.grid, s.surface.phi_hat));
     snapshot.mass = share(without_padding(s.grid, s.nodes.mass));
     snapshot.temperature = share(node_temperatures(s));
-    snapshot.peak_temperature = s.peak_temperature;
+    snapshot.peak_temperature = hottest_inside(*snapshot.phi, *snapshot.temperature);
     snapshot.absorbed_energy = s.ledger.absorbed;
     snapshot.lost_energy = s.ledger.lost() + s.ledger.missed;
     for (const Laser& laser : s.parameters.lasers)

@@ -24,13 +24,15 @@ double explicit_limit(const Simulation& s, double alpha) {
 
 void find_extreme_temperatures(Simulation& s) {
     double hottest = 0.0, coldest = std::numeric_limits<double>::infinity();
-    const std::int64_t size = s.grid.size;
+    const Grid& grid = s.grid;
 #pragma omp parallel for schedule(static) reduction(max : hottest) reduction(min : coldest)
-    for (std::int64_t i = 0; i < size; ++i)
-        if (s.nodes.mass[i] > 0.0) {
-            hottest = std::max(hottest, s.nodes.temperature[i]);
-            coldest = std::min(coldest, s.nodes.temperature[i]);
-        }
+    for (std::int64_t k = 0; k <= grid.cells[2]; ++k)
+        for (std::int64_t j = 0; j <= grid.cells[1]; ++j)
+            for (std::int64_t at = grid.index(0, j, k); at <= grid.index(grid.cells[0], j, k); ++at)
+                if (s.nodes.mass[at] > 0.0) {
+                    hottest = std::max(hottest, s.nodes.temperature[at]);
+                    coldest = std::min(coldest, s.nodes.temperature[at]);
+                }
     s.peak_temperature = hottest;
     s.coldest_temperature = coldest;
 }

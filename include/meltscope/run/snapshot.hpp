@@ -67,7 +67,7 @@ struct Snapshot {
     SharedField phi_hat;      ///< 1
     SharedField mass;         ///< kg; zero: the node has no temperature of its own
     SharedField temperature;  ///< K; at nodes without mass extended from their neighbours so that surfaces can be coloured
-    double peak_temperature = 0.0;   ///< K, hottest node with mass
+    double peak_temperature = 0.0;   ///< K, hottest node in the material
     double absorbed_energy = 0.0;    ///< J, since the start
     double lost_energy = 0.0;        ///< J, lost from surfaces and beside the material since the start
     std::int64_t liquid_particles = 0;

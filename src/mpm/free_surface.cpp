@@ -172,8 +172,8 @@ void deposit(const Grid& grid, const SurfaceElements& elements, std::span<const 
     });
 }
 
-void surface_temperatures(const Grid& grid, const SurfaceElements& elements, const Nodes& nodes,
-                          std::vector<double>& temperature) {
+void interpolate_to_surface(const Grid& grid, const SurfaceElements& elements, const Field& field,
+                            std::vector<double>& interpolated) {
     Field in_layout(elements.layout.size(), 0.0);
 #pragma omp parallel for schedule(static)
     for (std::size_t g = 0; g < elements.layout.groups.size(); ++g) {
@@ -181,14 +181,19 @@ void surface_temperatures(const Grid& grid, const SurfaceElements& elements, con
         for (std::int64_t slot = group.first_slot; slot < group.first_slot + group.slots; ++slot) {
             std::array<Lanes, 1> value;
             point_stencil(elements.offset_x.data(), elements.offset_y.data(), elements.offset_z.data(), slot)
-                .gather(nodes.temperature.data() + group.corner, grid.stride_y, grid.stride_z, value);
+                .gather(field.data() + group.corner, grid.stride_y, grid.stride_z, value);
             store(value[0] * load(&elements.normalization[slot * lane_count]), &in_layout[slot * lane_count]);
         }
     }
-    temperature.resize(elements.particle.size());
+    interpolated.resize(elements.particle.size());
 #pragma omp parallel for schedule(static)
-    for (std::size_t s = 0; s < temperature.size(); ++s)
-        temperature[s] = in_layout[elements.layout.place[s]];
+    for (std::size_t s = 0; s < interpolated.size(); ++s)
+        interpolated[s] = in_layout[elements.layout.place[s]];
+}
+
+void surface_temperatures(const Grid& grid, const SurfaceElements& elements, const Nodes& nodes,
+                          std::vector<double>& temperature) {
+    interpolate_to_surface(grid, elements, nodes.temperature, temperature);
 }
 
 } // namespace meltscope

@@ -41,6 +41,10 @@ FreeSurface find_free_surface(const Grid& grid, const Particles& particles, cons
 /// `energy`: J a surface element, one by one.
 void deposit(const Grid& grid, const SurfaceElements& elements, std::span<const double> energy, Nodes& nodes);
 
+/// Interpolates a nodal field, its ghosts set, to each surface element, one by one: with the weights of deposit().
+void interpolate_to_surface(const Grid& grid, const SurfaceElements& elements, const Field& field,
+                            std::vector<double>& value);
+
 /// Temperature in K at each surface element, one by one: the nodes' with the weights of deposit().
 void surface_temperatures(const Grid& grid, const SurfaceElements& elements, const Nodes& nodes,
                           std::vector<double>& temperature);

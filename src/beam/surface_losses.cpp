@@ -1,0 +1,215 @@
+#include "meltscope/beam/surface_losses.hpp"
+
+#include "meltscope/constants.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace meltscope {
+namespace {
+
+/// Elements that are added up together; fixed, so that sums do not depend on the number of threads.
+constexpr std::int64_t elements_in_chunk = 2048;
+
+double required(const std::optional<double>& value, const Material& material, const char* key,
+                const char* loss) {
+    if (!value)
+        throw std::invalid_argument(
+            fmt::format("material '{}' lacks the key '{}', which {} needs", material.name, key, loss));
+    if (!(*value > 0.0 && std::isfinite(*value)))
+        throw std::invalid_argument(
+            fmt::format("{} of material '{}' must be above zero, not {}", key, material.name, *value));
+    return *value;
+}
+
+LossLaw make_loss_law(const Material& material, const LossOptions& options) {
+    LossLaw law;
+    law.ambient = options.ambient;
+    law.convection = options.convection;
+    if (options.radiation) {
+        const double emissivity = required(material.emissivity, material, "emissivity", "radiation");
+        if (emissivity > 1.0)
+            throw std::invalid_argument(fmt::format("emissivity of material '{}' must be at most 1, not {}",
+                                                    material.name, emissivity));
+        law.radiation = emissivity * constants::stefan_boltzmann;
+    }
+    if (options.evaporation) {
+        const char* loss = "evaporation";
+        const double boiling_point = required(material.boiling_point, material, "boiling_point", loss);
+        const double molar_mass = required(material.molar_mass, material, "molar_mass", loss);
+        const double latent_heat =
+            required(material.latent_heat_of_vaporization, material, "latent_heat_of_vaporization", loss);
+        law.evaporation = latent_heat * 0.82 * constants::standard_atmosphere *
+                          std::sqrt(molar_mass / (2.0 * constants::pi * constants::gas_constant));
+        law.evaporation_temperature = latent_heat * molar_mass / constants::gas_constant;
+        law.inverse_boiling_point = 1.0 / boiling_point;
+        // exp[B (1/T_b - 1/T)] falls faster than 1/sqrt(T) rises.
+        law.evaporation_onset =
+            1.0 / (law.inverse_boiling_point - std::log(dropped_evaporation) / law.evaporation_temperature);
+        law.evaporation_onset = std::max(law.evaporation_onset, options.ambient);
+    }
+    return law;
+}
+
+double evaporative_flux(const LossLaw& law, double temperature) {
+    if (law.evaporation == 0.0 || temperature <= law.evaporation_onset)
+        return 0.0;
+    return law.evaporation *
+           std::exp(law.evaporation_temperature * (law.inverse_boiling_point - 1.0 / temperature)) /
+           std::sqrt(temperature);
+}
+
+/// s of the radiative flux s (T - T_amb), W/m^2/K.
+double radiative_coefficient(const LossLaw& law, double temperature) {
+    return law.radiation * (temperature * temperature + law.ambient * law.ambient) *
+           (temperature + law.ambient);
+}
+
+/// T' of e(T') + r [s (T' - T_amb) + q_evaporation(T')] = target, r = a dt/M_s: Newton within a bracket.
+double evaporating_temperature(const LossLaw& law, const EquationOfState& eos, double target, double r,
+                               double s) {
+    double high = eos.temperature(target); // without losses
+    double low = law.ambient;
+    double t = high;
+    for (int iteration = 0; iteration < 100 && low < high; ++iteration) {
+        const double evaporation = evaporative_flux(law, t);
+        const double excess = eos.energy(t) + r * (s * (t - law.ambient) + evaporation) - target;
+        (excess > 0.0 ? high : low) = t;
+        const double slope =
+            eos.heat_capacity(t) + r * (s + evaporation * (law.evaporation_temperature / t - 0.5) / t);
+        double next = t - excess / slope;
+        if (!(next >= low && next <= high))
+            next = 0.5 * (low + high);
+        if (std::abs(next - t) <= 1e-11 * t)
+            return next;
+        t = next;
+    }
+    return t;
+}
+
+/// Losses of one element of area a and mass m in J.
+LossEnergy element_loss(const LossLaw& law, const EquationOfState& eos, double area, double mass,
+                        double temperature, double gain, double dt) {
+    const double a_dt = area * dt;
+    const double radiative = radiative_coefficient(law, temperature);
+    const double s = radiative + law.convection;
+    const double c = eos.heat_capacity(temperature);
+    const bool may_evaporate = law.evaporation > 0.0 && (temperature >= law.evaporation_onset ||
+                                                         gain >= c * (law.evaporation_onset - temperature));
+    if (!may_evaporate) {
+        // T' - T_amb = [c (T - T_amb) + gain] / (c + s a dt/m)
+        const double excess = a_dt * mass * (c * (temperature - law.ambient) + gain) / (mass * c + a_dt * s);
+        return {radiative * excess, law.convection * excess, 0.0};
+    }
+    const double t = evaporating_temperature(law, eos, eos.energy(temperature) + gain, a_dt / mass, s);
+    const double excess = a_dt * (t - law.ambient);
+    return {radiative * excess, law.convection * excess, a_dt * evaporative_flux(law, t)};
+}
+
+const Field& inertia(const Nodes& nodes) {
+    return nodes.inertia.empty() ? nodes.mass : nodes.inertia;
+}
+
+/// Nodes with mass among the 27 around each element's point.
+std::vector<std::int64_t> nodes_within_reach(const Grid& grid, const SurfaceElements& elements,
+                                             const Field& mass) {
+    std::vector<char> reached(grid.size, 0);
+    for (const LaneGroup& group : elements.layout.groups)
+        for (int k = 0; k < 3; ++k)
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < lane_count + 2; ++i)
+                    reached[group.corner + i + j * grid.stride_y + k * grid.stride_z] = 1;
+    std::vector<std::int64_t> nodes;
+    for (std::int64_t i = 0; i < grid.size; ++i)
+        if (reached[i] && mass[i] > 0.0)
+            nodes.push_back(i);
+    return nodes;
+}
+
+} // namespace
+
+std::vector<LossLaw> make_loss_laws(const std::vector<Material>& materials, const LossOptions& options) {
+    if (!(options.ambient >= 0.0 && std::isfinite(options.ambient)))
+        throw std::invalid_argument(fmt::format("the ambient temperature must not be {} K", options.ambient));
+    if (!(options.convection >= 0.0 && std::isfinite(options.convection)))
+        throw std::invalid_argument(
+            fmt::format("the coefficient of convection must not be {} W/m^2/K", options.convection));
+    std::vector<LossLaw> laws;
+    for (const Material& material : materials)
+        laws.push_back(make_loss_law(material, options));
+    return laws;
+}
+
+LossFlux loss_flux(const LossLaw& law, double temperature) {
+    const double excess = temperature - law.ambient;
+    return {radiative_coefficient(law, temperature) * excess, law.convection * excess,
+            evaporative_flux(law, temperature)};
+}
+
+LossElements make_loss_elements(const Grid& grid, const Boundary& boundary, const Particles& particles,
+                                const SurfaceElements& elements, const Nodes& nodes) {
+    LossElements loss;
+    loss.near = nodes_within_reach(grid, elements, inertia(nodes));
+    loss.gain.assign(grid.size, 0.0);
+    for (const std::int64_t q : elements.particle)
+        loss.material.push_back(particles.material[q]);
+
+    // The gain of one joule a square metre.
+    Nodes even;
+    even.mass = inertia(nodes);
+    even.increment.assign(grid.size, 0.0);
+    deposit(grid, elements, elements.area, even);
+    std::vector<double> gain;
+    surface_gains(grid, boundary, elements, loss, even, gain);
+    loss.mass.resize(elements.count());
+    for (std::int64_t s = 0; s < elements.count(); ++s)
+        loss.mass[s] = elements.area[s] / gain[s];
+    return loss;
+}
+
+void surface_gains(const Grid& grid, const Boundary& boundary, const SurfaceElements& elements,
+                   LossElements& loss, Nodes& nodes, std::vector<double>& gain) {
+    fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.increment);
+    const Field& mass = inertia(nodes);
+#pragma omp parallel for schedule(static)
+    for (const std::int64_t i : loss.near)
+        loss.gain[i] = nodes.increment[i] / mass[i];
+    mirror_ghosts(grid, boundary, loss.gain);
+    interpolate_to_surface(grid, elements, loss.gain, gain);
+}
+
+LossEnergy lose_heat(std::span<const LossLaw> laws, const std::vector<EquationOfState>& eos,
+                     const SurfaceElements& elements, const LossElements& loss,
+                     std::span<const double> temperature, std::span<const double> gain, double dt,
+                     std::span<double> energy) {
+    const std::int64_t count = elements.count();
+    std::vector<LossEnergy> of_chunk((count + elements_in_chunk - 1) / elements_in_chunk);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::size_t chunk = 0; chunk < of_chunk.size(); ++chunk) {
+        LossEnergy sum;
+        const std::int64_t first = std::int64_t(chunk) * elements_in_chunk;
+        for (std::int64_t s = first; s < std::min(count, first + elements_in_chunk); ++s) {
+            const int m = loss.material[s];
+            const LossEnergy e = element_loss(laws[m], eos[m], elements.area[s], loss.mass[s], temperature[s],
+                                              gain.empty() ? 0.0 : gain[s], dt);
+            energy[s] -= e.total();
+            sum.radiated += e.radiated;
+            sum.convected += e.convected;
+            sum.evaporated += e.evaporated;
+        }
+        of_chunk[chunk] = sum;
+    }
+    LossEnergy total;
+    for (const LossEnergy& sum : of_chunk) {
+        total.radiated += sum.radiated;
+        total.convected += sum.convected;
+        total.evaporated += sum.evaporated;
+    }
+    return total;
+}
+
+} // namespace meltscope

@@ -4,7 +4,8 @@
 
 namespace meltscope {
 
-/// Doubles that are worked on together. MELTSCOPE_SIMD_WIDTH sets it; otherwise the width of this target's registers.
+/// Doubles that are worked on together. MELTSCOPE_SIMD_WIDTH sets it; otherwise the width of this target's
+/// registers.
 #if defined(MELTSCOPE_SIMD_WIDTH)
 inline constexpr int lane_count = MELTSCOPE_SIMD_WIDTH;
 #elif defined(__AVX512F__)
@@ -19,10 +20,14 @@ inline constexpr int lane_count = 2;
 using Lanes = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, lane_count>>;
 
 /// Loads the lanes that start at `first`, any alignment.
-inline Lanes load(const double* first) { return Lanes(first, std::experimental::element_aligned); }
+inline Lanes load(const double* first) {
+    return Lanes(first, std::experimental::element_aligned);
+}
 
 /// Stores the lanes from `first` on, any alignment.
-inline void store(const Lanes& lanes, double* first) { lanes.copy_to(first, std::experimental::element_aligned); }
+inline void store(const Lanes& lanes, double* first) {
+    lanes.copy_to(first, std::experimental::element_aligned);
+}
 
 /// Lane by lane: `yes` where `condition` holds, else `no`.
 inline Lanes select(const Lanes::mask_type& condition, const Lanes& yes, const Lanes& no) {
@@ -32,6 +37,8 @@ inline Lanes select(const Lanes::mask_type& condition, const Lanes& yes, const L
 }
 
 /// For code that serves both a single double and a lane group.
-inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+inline double select(bool condition, double yes, double no) {
+    return condition ? yes : no;
+}
 
 } // namespace meltscope

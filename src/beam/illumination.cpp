@@ -12,8 +12,8 @@ namespace {
 /// Rays a cell along each direction across the beam.
 constexpr double rays_in_cell = 2.0;
 
-/// An element that lies this much deeper than the first interface, in cells, is still lit: the two are found in
-/// different ways, and the map's rays pass up to a quarter cell beside the element.
+/// An element that lies this much deeper than the first interface, in cells, is still lit: the two are found
+/// in different ways, and the map's rays pass up to a quarter cell beside the element.
 constexpr double lit_tolerance = 1.0;
 
 /// Trilinear level set; outside the box there is no material.
@@ -56,8 +56,8 @@ Stretch clip(const Grid& grid, const Vec3& start, const Vec3& direction) {
     return s;
 }
 
-/// Distance along the ray to the first interface, infinite if it meets none. phi is a distance, so that steps of its
-/// size cannot jump over material.
+/// Distance along the ray to the first interface, infinite if it meets none. phi is a distance, so that steps
+/// of its size cannot jump over material.
 double first_interface(const Grid& grid, const Field& phi, const Vec3& start, const Vec3& direction) {
     const Stretch s = clip(grid, start, direction);
     const double shortest = 0.1 * grid.dx;
@@ -86,7 +86,8 @@ std::int64_t map_cell(const LightMap& map, const Vec3& point) {
 }
 
 /// Share of the beam's power that meets material, by the map's rays.
-double share_that_meets_material(const LightMap& map, const BeamShape& shape, const Vec3& position, double cutoff) {
+double share_that_meets_material(const LightMap& map, const BeamShape& shape, const Vec3& position,
+                                 double cutoff) {
     const Vec3 offset = position - map.corner;
     const double centre_u = offset.dot(map.u) / map.spacing, centre_v = offset.dot(map.v) / map.spacing;
     const std::int64_t reach = std::int64_t(std::ceil(cutoff / map.spacing)) + 1;
@@ -128,23 +129,25 @@ LightMap make_light_map(const Grid& grid, const FreeSurface& surface, const Vec3
     }
     map.count_u = std::max<std::int64_t>(1, std::int64_t(std::ceil((high[0] - low[0]) / map.spacing - 1e-6)));
     map.count_v = std::max<std::int64_t>(1, std::int64_t(std::ceil((high[1] - low[1]) / map.spacing - 1e-6)));
-    map.corner = (low[0] + 0.5 * map.spacing) * map.u + (low[1] + 0.5 * map.spacing) * map.v + low[2] * map.direction;
+    map.corner =
+        (low[0] + 0.5 * map.spacing) * map.u + (low[1] + 0.5 * map.spacing) * map.v + low[2] * map.direction;
 
     map.depth.resize(map.count_u * map.count_v);
 #pragma omp parallel for schedule(dynamic, 8)
     for (std::int64_t b = 0; b < map.count_v; ++b)
         for (std::int64_t a = 0; a < map.count_u; ++a)
-            map.depth[a + map.count_u * b] =
-                first_interface(grid, surface.phi, map.corner + map.spacing * (double(a) * map.u + double(b) * map.v),
-                                map.direction);
+            map.depth[a + map.count_u * b] = first_interface(
+                grid, surface.phi, map.corner + map.spacing * (double(a) * map.u + double(b) * map.v),
+                map.direction);
 
     const SurfaceElements& elements = surface.elements;
     map.lit.resize(elements.count());
 #pragma omp parallel for schedule(static)
     for (std::int64_t s = 0; s < elements.count(); ++s) {
         const std::int64_t cell = map_cell(map, elements.point[s]);
-        map.lit[s] = cell >= 0 && elements.normal[s].dot(map.direction) < 0.0 &&
-                     (elements.point[s] - map.corner).dot(map.direction) <= map.depth[cell] + lit_tolerance * grid.dx;
+        map.lit[s] =
+            cell >= 0 && elements.normal[s].dot(map.direction) < 0.0 &&
+            (elements.point[s] - map.corner).dot(map.direction) <= map.depth[cell] + lit_tolerance * grid.dx;
     }
     return map;
 }

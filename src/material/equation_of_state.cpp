@@ -50,8 +50,8 @@ double worst_inverse_error(const EquationOfState& eos) {
 
 EquationOfState make_equation_of_state(const Material& m) {
     if (!(m.solidus < m.liquidus))
-        throw std::invalid_argument(
-            fmt::format("{}: the solidus ({} K) must lie below the liquidus ({} K)", m.name, m.solidus, m.liquidus));
+        throw std::invalid_argument(fmt::format("{}: the solidus ({} K) must lie below the liquidus ({} K)",
+                                                m.name, m.solidus, m.liquidus));
     EquationOfState eos;
     eos.density = m.density;
     eos.solidus = m.solidus;
@@ -65,9 +65,10 @@ EquationOfState make_equation_of_state(const Material& m) {
     for (double t = 0.0; t <= hottest_checked; t += 1.0) {
         const double c = t < m.solidus ? m.heat_capacity.solid(t) : m.heat_capacity.liquid(t);
         if (!(c > 0.0))
-            throw std::invalid_argument(fmt::format("{}: the heat capacity is {} J/kg/K at {} K; it must be positive "
-                                                    "from 0 to {} K",
-                                                    m.name, c, t, hottest_checked));
+            throw std::invalid_argument(
+                fmt::format("{}: the heat capacity is {} J/kg/K at {} K; it must be positive "
+                            "from 0 to {} K",
+                            m.name, c, t, hottest_checked));
     }
 
     eos.range[0] = single_phase_range(m.heat_capacity.solid, 0.0, 0.0);
@@ -75,10 +76,12 @@ EquationOfState make_equation_of_state(const Material& m) {
     eos.range[1] = mushy_range(m, e_solidus);
     const double e_liquidus = e_solidus + energy_at(eos.range[1], m.liquidus - m.solidus);
     eos.range[2] = single_phase_range(m.heat_capacity.liquid, m.liquidus, e_liquidus);
-    // The chord of each bounded range; the liquid has no end, so its chord ends where temperatures are checked.
+    // The chord of each bounded range; the liquid has no end, so its chord ends where temperatures are
+    // checked.
     eos.range[0].guess = m.solidus / e_solidus;
     eos.range[1].guess = (m.liquidus - m.solidus) / (e_liquidus - e_solidus);
-    eos.range[2].guess = (hottest_checked - m.liquidus) / energy_at(eos.range[2], hottest_checked - m.liquidus);
+    eos.range[2].guess =
+        (hottest_checked - m.liquidus) / energy_at(eos.range[2], hottest_checked - m.liquidus);
 
     while (worst_inverse_error(eos) > inverse_tolerance) {
         if (++eos.newton_steps > most_newton_steps)

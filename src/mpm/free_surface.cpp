@@ -8,7 +8,8 @@
 namespace meltscope {
 namespace {
 
-/// Interpolates `field` to the particles, layout order; with `gradient`, |sum_i f_i grad N_ip| in 1/m instead.
+/// Interpolates `field` to the particles, layout order; with `gradient`, |sum_i f_i grad N_ip| in 1/m
+/// instead.
 Field gather_to_particles(const Grid& grid, const Particles& particles, const Field& field, bool gradient) {
     const LatticeStencils lattices;
     Field result(particles.layout.size(), 0.0);
@@ -20,8 +21,9 @@ Field gather_to_particles(const Grid& grid, const Particles& particles, const Fi
             typename Stencil::Points f;
             stencil.gather(field.data() + group.corner, grid.stride_y, grid.stride_z, f);
             for (int p = 0; p < Stencil::points; ++p) {
-                const Lanes value =
-                    gradient ? sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]) / grid.dx : f.value[p];
+                const Lanes value = gradient
+                                        ? sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]) / grid.dx
+                                        : f.value[p];
                 store(value, &result[first + p * lane_count]);
             }
         });
@@ -41,9 +43,10 @@ Field node_areas(const Grid& grid, const Field& phi) {
                 const double hat = std::max(0.0, 1.0 - std::abs(phi[at]) / dx) / dx;
                 if (hat == 0.0)
                     continue;
-                const Vec3 gradient = Vec3(phi[at + 1] - phi[at - 1], phi[at + grid.stride_y] - phi[at - grid.stride_y],
-                                           phi[at + grid.stride_z] - phi[at - grid.stride_z]) /
-                                      (2.0 * dx);
+                const Vec3 gradient =
+                    Vec3(phi[at + 1] - phi[at - 1], phi[at + grid.stride_y] - phi[at - grid.stride_y],
+                         phi[at + grid.stride_z] - phi[at - grid.stride_z]) /
+                    (2.0 * dx);
                 area[at] = dx * dx * dx * grid.share_in_box(i, j, k) * gradient.norm() * hat;
             }
     return area;
@@ -63,7 +66,8 @@ Sample sample(const Grid& grid, const Field& f, const Vec3& point) {
     for (int k = 0; k < 3; ++k)
         for (int j = 0; j < 3; ++j)
             for (int i = 0; i < 3; ++i) {
-                const double value = f[grid.index(bin.node[0] + i - 1, bin.node[1] + j - 1, bin.node[2] + k - 1)];
+                const double value =
+                    f[grid.index(bin.node[0] + i - 1, bin.node[1] + j - 1, bin.node[2] + k - 1)];
                 result.value += value * n[0].value[i] * n[1].value[j] * n[2].value[k];
                 result.gradient += value * Vec3(n[0].derivative[i] * n[1].value[j] * n[2].value[k],
                                                 n[0].value[i] * n[1].derivative[j] * n[2].value[k],
@@ -146,13 +150,15 @@ FreeSurface find_free_surface(const Grid& grid, const Particles& particles, cons
     return surface;
 }
 
-void deposit(const Grid& grid, const SurfaceElements& elements, std::span<const double> energy, Nodes& nodes) {
+void deposit(const Grid& grid, const SurfaceElements& elements, std::span<const double> energy,
+             Nodes& nodes) {
     Field in_layout(elements.layout.size(), 0.0);
     for (std::size_t s = 0; s < energy.size(); ++s) {
         const std::int64_t at = elements.layout.place[s];
         in_layout[at] = energy[s] * elements.normalization[at];
     }
-    // A node without mass takes its share too, which the normalization has given to the others; step 6 ignores it.
+    // A node without mass takes its share too, which the normalization has given to the others; step 6
+    // ignores it.
     for_each_block(elements.layout, [&](const LaneBlock& block) {
         for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
             const LaneGroup& group = elements.layout.groups[g];
@@ -163,7 +169,8 @@ void deposit(const Grid& grid, const SurfaceElements& elements, std::span<const 
                 if (all_of(joule == 0.0))
                     continue;
                 any = true;
-                point_stencil(elements.offset_x.data(), elements.offset_y.data(), elements.offset_z.data(), slot)
+                point_stencil(elements.offset_x.data(), elements.offset_y.data(), elements.offset_z.data(),
+                              slot)
                     .scatter_value({joule}, sums);
             }
             if (any)

@@ -6,7 +6,8 @@ namespace meltscope {
 
 Grid make_grid(const Vec3& lower, double dx, const Index3& cells) {
     if (!(dx > 0.0) || (cells < 1).any())
-        throw std::invalid_argument("a grid needs a positive cell size and at least one cell along each axis");
+        throw std::invalid_argument(
+            "a grid needs a positive cell size and at least one cell along each axis");
     Grid grid;
     grid.origin = lower;
     grid.dx = dx;

@@ -9,12 +9,12 @@
 namespace meltscope {
 namespace {
 
-/// Rows of bins in a block along y and along z. Two or more keep blocks of one colour apart; the value must not depend
-/// on the number of threads, because it sets the order of the sums.
+/// Rows of bins in a block along y and along z. Two or more keep blocks of one colour apart; the value must
+/// not depend on the number of threads, because it sets the order of the sums.
 constexpr std::int64_t rows_in_block = 4;
 
-/// A point this close below the border of two bins, in cells, counts to the upper one: lattice points on the border
-/// then fall into one bin whatever their round-off.
+/// A point this close below the border of two bins, in cells, counts to the upper one: lattice points on the
+/// border then fall into one bin whatever their round-off.
 constexpr double border_tolerance = 1e-9;
 
 constexpr double lattice_tolerance = 1e-6; // cells
@@ -92,8 +92,8 @@ BinPlace bin_place(const Grid& grid, const Vec3& point) {
         const double cells_in = (point[axis] - grid.origin[axis]) / grid.dx;
         const double nearest = std::floor(cells_in + 0.5 + border_tolerance);
         if (!(nearest >= 0.0 && nearest <= double(grid.cells[axis])))
-            throw std::out_of_range(fmt::format("the point ({}, {}, {}) m lies outside the domain", point[0], point[1],
-                                                point[2]));
+            throw std::out_of_range(fmt::format("the point ({}, {}, {}) m lies outside the domain", point[0],
+                                                point[1], point[2]));
         place.node[axis] = std::int32_t(nearest);
         const double offset = cells_in - nearest;
         // On the border exactly, the third node's weight is exactly zero and it gets no mass from round-off.
@@ -102,8 +102,8 @@ BinPlace bin_place(const Grid& grid, const Vec3& point) {
     return place;
 }
 
-LaneLayout make_lane_layout(const Grid& grid, std::span<const Vec3> points, std::span<const std::int16_t> kind,
-                            int lattice) {
+LaneLayout make_lane_layout(const Grid& grid, std::span<const Vec3> points,
+                            std::span<const std::int16_t> kind, int lattice) {
     const std::int64_t count = std::int64_t(points.size());
     const std::int64_t groups_x = grid.groups_in_row(), rows_y = grid.cells[1] + 1;
     const RowOrder order = order_rows(grid);
@@ -118,7 +118,8 @@ LaneLayout make_lane_layout(const Grid& grid, std::span<const Vec3> points, std:
     for (std::int64_t p = 0; p < count; ++p) {
         const BinPlace place = bin_place(grid, points[p]);
         const std::int64_t row = order.rank[place.node[1] + place.node[2] * rows_y];
-        const std::int64_t group = (row * groups_x + place.node[0] / lane_count) * kinds + (kind.empty() ? 0 : kind[p]);
+        const std::int64_t group =
+            (row * groups_x + place.node[0] / lane_count) * kinds + (kind.empty() ? 0 : kind[p]);
         bin_of[p] = group * lane_count + place.node[0] % lane_count;
         BinFill& bin = fill[bin_of[p]];
         rank_in_bin[p] = bin.count++;
@@ -141,14 +142,16 @@ LaneLayout make_lane_layout(const Grid& grid, std::span<const Vec3> points, std:
                     bool on_lattice = lattice > 0;
                     for (int lane = 0; lane < lane_count; ++lane) {
                         most = std::max(most, bins[lane].count);
-                        on_lattice = on_lattice && !bins[lane].off_lattice && bins[lane].count <= lattice_points;
+                        on_lattice =
+                            on_lattice && !bins[lane].off_lattice && bins[lane].count <= lattice_points;
                     }
                     if (most == 0)
                         continue;
                     // A lattice group costs about what half its points cost one by one.
                     on_lattice = on_lattice && 2 * most >= lattice_points;
                     LaneGroup group;
-                    group.corner = grid.index(gx * lane_count - 1, order.rows[row].j - 1, order.rows[row].k - 1);
+                    group.corner =
+                        grid.index(gx * lane_count - 1, order.rows[row].j - 1, order.rows[row].k - 1);
                     group.first_slot = layout.slots;
                     group.slots = on_lattice ? lattice_points : most;
                     group.kind = std::int16_t(m);

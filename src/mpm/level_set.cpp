@@ -9,8 +9,8 @@
 namespace meltscope {
 namespace {
 
-/// Nodes this close to the surface, in cells, find it themselves. More than half a cell's diagonal, so that no part of
-/// the surface is missed; less than the reach of the smoothed profile, so that it can be inverted.
+/// Nodes this close to the surface, in cells, find it themselves. More than half a cell's diagonal, so that
+/// no part of the surface is missed; less than the reach of the smoothed profile, so that it can be inverted.
 constexpr double seed_band = 0.9;
 
 /// A particle this far outside the surface, in cells, has been smoothed away and gets a ball of its own.
@@ -66,7 +66,8 @@ std::vector<Foot> find_feet(const Grid& grid, const Field& distance, std::vector
                     continue; // a gap or a sheet thinner than the grid can see
                 const Vec3 normal = gradient.normalized();
                 nearest[at] = std::int32_t(feet_of_layer[k].size());
-                feet_of_layer[k].push_back({grid.position(i, j, k) - distance[at] * grid.dx * normal, normal});
+                feet_of_layer[k].push_back(
+                    {grid.position(i, j, k) - distance[at] * grid.dx * normal, normal});
             }
     std::vector<Foot> feet;
     for (std::int64_t k = 0; k <= grid.cells[2]; ++k) {
@@ -98,7 +99,8 @@ class FootSweep {
 
     void along(int axis) {
         const std::array<std::int64_t, 3> stride{1, grid_.stride_y, grid_.stride_z};
-        const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2; // rows across the axis; u varies fastest in memory
+        const int u = axis == 0 ? 1 : 0,
+                  v = axis == 2 ? 1 : 2; // rows across the axis; u varies fastest in memory
         const std::int64_t last = grid_.cells[axis];
 #pragma omp parallel for schedule(static)
         for (std::int64_t q = 0; q <= grid_.cells[v]; ++q) {
@@ -147,13 +149,13 @@ double trilinear(const Grid& grid, const Field& f, const Vec3& point) {
     const double* at = &f[grid.index(cell[0], cell[1], cell[2])];
     const auto along_x = [&](std::int64_t shift) { return at[shift] + r[0] * (at[shift + 1] - at[shift]); };
     const double low = along_x(0) + r[1] * (along_x(grid.stride_y) - along_x(0));
-    const double high = along_x(grid.stride_z) +
-                        r[1] * (along_x(grid.stride_z + grid.stride_y) - along_x(grid.stride_z));
+    const double high =
+        along_x(grid.stride_z) + r[1] * (along_x(grid.stride_z + grid.stride_y) - along_x(grid.stride_z));
     return low + r[2] * (high - low);
 }
 
-/// Distance in m from `point` to the surface near `foot`: to the tangent plane, corrected by what the smoothed
-/// fraction says at the point met there.
+/// Distance in m from `point` to the surface near `foot`: to the tangent plane, corrected by what the
+/// smoothed fraction says at the point met there.
 double distance_near(const Grid& grid, const Field& smoothed, const Vec3& point, const Foot& foot) {
     const Vec3 from_foot = point - foot.point;
     const double height = from_foot.dot(foot.normal);
@@ -166,7 +168,8 @@ double distance_near(const Grid& grid, const Field& smoothed, const Vec3& point,
 }
 
 /// Particles that stand outside the smoothed surface become balls, united with the rest.
-void unite_lone_particles(const Grid& grid, const Particles& particles, const LevelSetOptions& options, Field& phi) {
+void unite_lone_particles(const Grid& grid, const Particles& particles, const LevelSetOptions& options,
+                          Field& phi) {
     std::vector<std::int64_t> lone;
     for (std::int64_t q = 0; q < particles.count(); ++q)
         if (trilinear(grid, phi, particles.position[q]) > smoothed_away * grid.dx)
@@ -176,7 +179,9 @@ void unite_lone_particles(const Grid& grid, const Particles& particles, const Le
         const double radius = (options.radius - 0.5) * std::cbrt(particles.volume[particles.layout.place[q]]);
         const BinPlace bin = bin_place(grid, centre);
         const auto low = [&](int axis) { return std::max<std::int64_t>(0, bin.node[axis] - 4); };
-        const auto high = [&](int axis) { return std::min<std::int64_t>(grid.cells[axis], bin.node[axis] + 4); };
+        const auto high = [&](int axis) {
+            return std::min<std::int64_t>(grid.cells[axis], bin.node[axis] + 4);
+        };
         for (std::int64_t k = low(2); k <= high(2); ++k)
             for (std::int64_t j = low(1); j <= high(1); ++j)
                 for (std::int64_t i = low(0); i <= high(0); ++i) {
@@ -213,7 +218,8 @@ Field signed_distance(const Grid& grid, const Particles& particles, const LevelS
         const double sign = smoothed[at] < 0.0 ? -1.0 : 1.0;
         double distance = level_set_band * grid.dx;
         if (nearest[at] >= 0)
-            distance = std::min(distance, distance_near(grid, smoothed, grid.position(i, j, k), feet[nearest[at]]));
+            distance =
+                std::min(distance, distance_near(grid, smoothed, grid.position(i, j, k), feet[nearest[at]]));
         phi[at] = sign * distance;
     });
     unite_lone_particles(grid, particles, options, phi);

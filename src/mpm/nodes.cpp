@@ -22,8 +22,8 @@ std::vector<std::int64_t> mixed_nodes(const Grid& grid, const std::vector<Field>
 
 } // namespace
 
-double mixture_temperature(const std::vector<EquationOfState>& materials, const std::vector<Field>& material_mass,
-                           std::int64_t node, double total) {
+double mixture_temperature(const std::vector<EquationOfState>& materials,
+                           const std::vector<Field>& material_mass, std::int64_t node, double total) {
     double low = 1e300, high = -1e300;
     double mass = 0.0;
     for (std::size_t a = 0; a < materials.size(); ++a)
@@ -147,7 +147,8 @@ void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials,
             store(Lanes(0.0), &nodes.temperature[i]);
             continue;
         }
-        const Lanes energy = select(filled, load(&nodes.mass_energy[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
+        const Lanes energy =
+            select(filled, load(&nodes.mass_energy[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
         if (count == 1) {
             store(energy, &nodes.energy[0][i]);
             store(select(filled, materials[0].temperature(energy), Lanes(0.0)), &nodes.temperature[i]);

@@ -58,7 +58,8 @@ double total_energy(const Particles& particles) {
         const LaneGroup& last = particles.layout.groups[blocks[b].last_group - 1];
         Lanes sum(0.0);
         for (std::int64_t slot = first.first_slot; slot < last.first_slot + last.slots; ++slot)
-            sum += load(&particles.mass[slot * lane_count]) * load(&particles.specific_energy[slot * lane_count]);
+            sum += load(&particles.mass[slot * lane_count]) *
+                   load(&particles.specific_energy[slot * lane_count]);
         partial[b] = reduce(sum);
     }
     double total = 0.0;

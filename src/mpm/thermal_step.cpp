@@ -15,8 +15,8 @@ const Field& energy_of_temperature(const EquationOfState& eos, Nodes& nodes) {
 }
 
 /// e* on and beyond faces of fixed temperature, for one material.
-void fix_face_energies(const Grid& grid, const Boundary& boundary, const EquationOfState& eos, const Field& inertia,
-                       Field& new_energy) {
+void fix_face_energies(const Grid& grid, const Boundary& boundary, const EquationOfState& eos,
+                       const Field& inertia, Field& new_energy) {
     for (int f = 0; f < 6; ++f)
         if (boundary[f].fixes_temperature()) {
             const double wall = boundary[f].temperature;
@@ -37,8 +37,8 @@ double sum_near_fixed_faces(const Nodes& nodes, const Field& field) {
     return sum;
 }
 
-/// q_i = (1 - 2 alpha_i dt / dx^2) D_i / m_i of nodes with one material outside its mushy range; zero elsewhere, where
-/// the energy may jump and a sharper increment would overshoot.
+/// q_i = (1 - 2 alpha_i dt / dx^2) D_i / m_i of nodes with one material outside its mushy range; zero
+/// elsewhere, where the energy may jump and a sharper increment would overshoot.
 void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
                    const Field& inertia, double dt, const Nodes& nodes, Field& q) {
     const double scale = 2.0 * dt / (grid.dx * grid.dx);
@@ -53,7 +53,8 @@ void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materia
                 const EquationOfState& eos = materials[a];
                 const Lanes alpha = eos.conductivity(t) / (eos.density * eos.heat_capacity(t));
                 const auto solid_or_liquid = (t < eos.solidus) || (t >= eos.liquidus);
-                const auto present = nodes.several_materials() ? load(&nodes.material_mass[a][i]) > 0.0 : mass > 0.0;
+                const auto present =
+                    nodes.several_materials() ? load(&nodes.material_mass[a][i]) > 0.0 : mass > 0.0;
                 where(present && solid_or_liquid, result) = (1.0 - scale * alpha) * rise;
             }
         }
@@ -70,12 +71,14 @@ void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materia
             });
 }
 
-/// Makes up for the lumped mass: D_i += m_i q_i - sum_p m_p N_ip sum_j N_jp q_j. With q = D/m this is one Jacobi sweep
-/// towards the consistent mass, which removes the scheme's error of order dx^2 (lumping smooths heat sources and slows
-/// short waves by k^2 dx^2 / 4); the part of q that grows with dt removes Euler's error of order dt, half
-/// (alpha k^2)^2 dt, in the same breath. Returns the change of D in J near faces of fixed temperature.
-double undo_lumping(const Grid& grid, const Particles& particles, const std::vector<EquationOfState>& materials,
-                    const Boundary& boundary, const Field& inertia, double dt, Nodes& nodes) {
+/// Makes up for the lumped mass: D_i += m_i q_i - sum_p m_p N_ip sum_j N_jp q_j. With q = D/m this is one
+/// Jacobi sweep towards the consistent mass, which removes the scheme's error of order dx^2 (lumping smooths
+/// heat sources and slows short waves by k^2 dx^2 / 4); the part of q that grows with dt removes Euler's
+/// error of order dt, half (alpha k^2)^2 dt, in the same breath. Returns the change of D in J near faces of
+/// fixed temperature.
+double undo_lumping(const Grid& grid, const Particles& particles,
+                    const std::vector<EquationOfState>& materials, const Boundary& boundary,
+                    const Field& inertia, double dt, Nodes& nodes) {
     Field& q = nodes.new_energy[0]; // free until e* is known
     lumping_error(grid, materials, boundary, inertia, dt, nodes, q);
     double change = -sum_near_fixed_faces(nodes, nodes.increment);
@@ -112,7 +115,8 @@ void diffuse(const Grid& grid, const Particles& particles, const std::vector<Equ
              const StepOptions& options, double dt, Nodes& nodes) {
     const LatticeStencils lattices;
     const double* temperature = nodes.temperature.data();
-    const double* energy = options.energy_gradient ? energy_of_temperature(materials[0], nodes).data() : nullptr;
+    const double* energy =
+        options.energy_gradient ? energy_of_temperature(materials[0], nodes).data() : nullptr;
     const double scale = -dt / (grid.dx * grid.dx); // gradients come per cell, one of T and one of N
     for_each_block(particles.layout, [&](const LaneBlock& block) {
         for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
@@ -144,8 +148,9 @@ void diffuse(const Grid& grid, const Particles& particles, const std::vector<Equ
     });
 }
 
-double update_grid_energy(const Grid& grid, const Particles& particles, const std::vector<EquationOfState>& materials,
-                          const Boundary& boundary, const StepOptions& options, double dt, Nodes& nodes) {
+double update_grid_energy(const Grid& grid, const Particles& particles,
+                          const std::vector<EquationOfState>& materials, const Boundary& boundary,
+                          const StepOptions& options, double dt, Nodes& nodes) {
     const int count = int(materials.size());
     double conducted = -sum_near_fixed_faces(nodes, nodes.increment); // J
     fold_ghosts(grid, boundary, AtFixedFaces::odd, nodes.increment);
@@ -153,12 +158,13 @@ double update_grid_energy(const Grid& grid, const Particles& particles, const st
     if (options.affine)
         conducted -= undo_lumping(grid, particles, materials, boundary, inertia, dt, nodes);
 
-    // e_i* = e_i + D_i / m_i
+        // e_i* = e_i + D_i / m_i
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < grid.size; i += lane_count) {
         const Lanes mass = load(&inertia[i]);
         const auto filled = mass > 0.0;
-        const Lanes rise = select(filled, load(&nodes.increment[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
+        const Lanes rise =
+            select(filled, load(&nodes.increment[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
         for (int a = 0; a < count; ++a)
             store(load(&nodes.energy[a][i]) + rise, &nodes.new_energy[a][i]);
     }
@@ -195,7 +201,8 @@ double update_grid_energy(const Grid& grid, const Particles& particles, const st
     return conducted;
 }
 
-void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Particles& particles, Nodes& nodes) {
+void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Particles& particles,
+                               Nodes& nodes) {
     const LatticeStencils lattices;
     const double keep = 1.0 - options.blend;
     for_each_block(particles.layout, [&](const LaneBlock& block) {

@@ -23,8 +23,8 @@ std::vector<double> without_padding(const Grid& grid, const Field& field) {
     return result;
 }
 
-/// Continues the node temperatures into nodes without mass, layer by layer, by the mean of the neighbours that have
-/// one; what is further off gets `rest`.
+/// Continues the node temperatures into nodes without mass, layer by layer, by the mean of the neighbours
+/// that have one; what is further off gets `rest`.
 Field extended(const Grid& grid, const Nodes& nodes, double rest) {
     Field t = nodes.temperature;
     std::vector<char> known(grid.size);
@@ -182,7 +182,9 @@ Snapshot take_snapshot(const Simulation& s, ParticleSelection particles) {
     snapshot.liquidus = s.parameters.materials.front().liquidus;
     const Index3 n = s.grid.cells + 1;
     snapshot.nodes = {s.grid.origin, s.grid.dx, {n[0], n[1], n[2]}};
-    const auto share = [](std::vector<double> f) { return std::make_shared<const std::vector<double>>(std::move(f)); };
+    const auto share = [](std::vector<double> f) {
+        return std::make_shared<const std::vector<double>>(std::move(f));
+    };
     snapshot.phi = share(without_padding(s.grid, s.surface.phi));
     snapshot.phi_hat = share(without_padding(s.grid, s.surface.phi_hat));
     snapshot.mass = share(without_padding(s.grid, s.nodes.mass));

@@ -44,11 +44,13 @@ double cell_volume(const std::array<double, 8>& hot, const std::array<double, 8>
     const auto positive = [](double v) { return v > 0.0; };
     if (std::all_of(hot.begin(), hot.end(), positive) && std::all_of(inside.begin(), inside.end(), positive))
         return 1.0;
-    if (std::none_of(hot.begin(), hot.end(), positive) || std::none_of(inside.begin(), inside.end(), positive))
+    if (std::none_of(hot.begin(), hot.end(), positive) ||
+        std::none_of(inside.begin(), inside.end(), positive))
         return 0.0;
     const auto trilinear = [](const std::array<double, 8>& f, double x, double y, double z) {
         const auto mix = [](double a, double b, double r) { return a + r * (b - a); };
-        return mix(mix(mix(f[0], f[1], x), mix(f[2], f[3], x), y), mix(mix(f[4], f[5], x), mix(f[6], f[7], x), y), z);
+        return mix(mix(mix(f[0], f[1], x), mix(f[2], f[3], x), y),
+                   mix(mix(f[4], f[5], x), mix(f[6], f[7], x), y), z);
     };
     int count = 0;
     for (int c = 0; c < volume_samples; ++c)
@@ -101,7 +103,8 @@ PoolFigures measure_pool(const NodeLattice& nodes, const std::vector<double>& te
                 std::array<double, 8> hot, inside;
                 bool any = false;
                 for (int c = 0; c < 8; ++c) {
-                    const std::int64_t corner = at + (c & 1) + ((c >> 1) & 1) * stride[1] + ((c >> 2) & 1) * stride[2];
+                    const std::int64_t corner =
+                        at + (c & 1) + ((c >> 1) & 1) * stride[1] + ((c >> 2) & 1) * stride[2];
                     hot[c] = temperature[corner] - isotherm;
                     inside[c] = -phi[corner];
                     any = any || hot[c] > 0.0;

@@ -11,12 +11,12 @@
 namespace meltscope {
 namespace {
 
-/// The diffusivity's largest value is looked for over temperatures rounded outwards to this, K, so that it changes
-/// seldom and runs ahead of the hottest node.
+/// The diffusivity's largest value is looked for over temperatures rounded outwards to this, K, so that it
+/// changes seldom and runs ahead of the hottest node.
 constexpr double temperature_rounding = 100.0;
 
-/// Stable steps of the affine transfer end between 0.9 and 1.2 dx^2/alpha on a lattice; for particles anywhere
-/// lambda_max <= 6 alpha/dx^2.
+/// Stable steps of the affine transfer end between 0.9 and 1.2 dx^2/alpha on a lattice; for particles
+/// anywhere lambda_max <= 6 alpha/dx^2.
 double explicit_limit(const Simulation& s, double alpha) {
     const double cell = s.grid.dx * s.grid.dx / alpha;
     return s.particles.lattice > 0 ? cell : cell / 3.0;
@@ -38,8 +38,10 @@ void find_extreme_temperatures(Simulation& s) {
 }
 
 double max_diffusivity(const Simulation& s) {
-    const double coldest = std::max(0.0, std::floor(s.coldest_temperature / temperature_rounding) * temperature_rounding);
-    const double hottest = (std::ceil(s.peak_temperature / temperature_rounding) + 1.0) * temperature_rounding;
+    const double coldest =
+        std::max(0.0, std::floor(s.coldest_temperature / temperature_rounding) * temperature_rounding);
+    const double hottest =
+        (std::ceil(s.peak_temperature / temperature_rounding) + 1.0) * temperature_rounding;
     double alpha = 0.0;
     for (const EquationOfState& eos : s.eos)
         alpha = std::max(alpha, max_diffusivity(eos, coldest, hottest));
@@ -180,7 +182,8 @@ void advance(Simulation& s, double target) {
         s.limit = StepLimit::landing;
     const StepOptions options = step_options(s, dt);
 
-    // e^n -> e^{n+1}. Steps 1 and 2 stand while the particles do; 3 and 4 were done at the end of the last step.
+    // e^n -> e^{n+1}. Steps 1 and 2 stand while the particles do; 3 and 4 were done at the end of the last
+    // step.
     diffuse(s.grid, s.particles, s.eos, options, dt, s.nodes); // 5
     deposit_laser_heat(s, dt);                                 // 5
     s.ledger.conducted_out -=
@@ -192,7 +195,8 @@ void advance(Simulation& s, double target) {
     s.dt = dt;
     ++s.step;
     if (!std::isfinite(s.peak_temperature) || !std::isfinite(s.coldest_temperature))
-        throw std::runtime_error(fmt::format("step {} at t = {} s gave a temperature that is not a number", s.step, s.time));
+        throw std::runtime_error(
+            fmt::format("step {} at t = {} s gave a temperature that is not a number", s.step, s.time));
 }
 
 void update_geometry(Simulation& s) {
@@ -234,7 +238,9 @@ void add_particles(Simulation& s, const ParticleList& more) {
     find_node_state(s);
 }
 
-void balance(Simulation& s) { s.ledger.stored = total_energy(s.particles); }
+void balance(Simulation& s) {
+    s.ledger.stored = total_energy(s.particles);
+}
 
 double energy_spread(const Simulation& s) {
     const Field interpolated = particle_temperatures(s.grid, s.particles, s.nodes);

@@ -130,7 +130,8 @@ ParticleList fill_scenario(const Scenario& scenario) {
     std::vector<double> energy;
     for (const BodySpec& body : scenario.bodies) {
         material.push_back(material_index(scenario, body.material));
-        energy.push_back(make_equation_of_state(scenario.materials[material.back()]).energy(body.temperature));
+        energy.push_back(
+            make_equation_of_state(scenario.materials[material.back()]).energy(body.temperature));
     }
 
     const LatticeFill filling(shapes, lattice);
@@ -173,7 +174,8 @@ Estimate estimate(const Scenario& scenario) {
                     box = bounding_box(spec);
             },
             body.shape);
-        const Vec3 size = (box.max.cwiseMin(scenario.domain.max) - box.min.cwiseMax(scenario.domain.min)).cwiseMax(0.0);
+        const Vec3 size =
+            (box.max.cwiseMin(scenario.domain.max) - box.min.cwiseMax(scenario.domain.min)).cwiseMax(0.0);
         volume += size.prod();
     }
     const Vec3 domain = scenario.domain.max - scenario.domain.min;

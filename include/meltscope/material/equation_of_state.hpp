@@ -9,51 +9,53 @@ namespace meltscope {
 
 /// Specific internal energy, temperature, conductivity and heat capacity of one material.
 ///
-/// e(T) = integral of c dT from 0 K, plus the latent heat spread over [solidus, liquidus] with a liquid fraction
-/// linear in T; in the mushy range c and kappa are mixed by that fraction. e(T) is therefore one polynomial of degree
-/// four or less in each of three ranges, and T(e) its Newton inverse without branches. Works on a double or on Lanes.
+/// e(T) = integral of c dT from 0 K, plus the latent heat spread over [solidus, liquidus] with a liquid
+/// fraction linear in T; in the mushy range c and kappa are mixed by that fraction. e(T) is therefore one
+/// polynomial of degree four or less in each of three ranges, and T(e) its Newton inverse without branches.
+/// Works on a double or on Lanes.
 struct EquationOfState {
     /// One range: e = e_start + t (a1 + t (a2 + t (a3 + t a4))), t = T - T_start.
     struct Range {
         double temperature = 0.0; ///< K, where the range starts
         double energy = 0.0;      ///< J/kg, there
         std::array<double, 4> a{};
-        double guess = 0.0;       ///< K kg/J, first guess of t per unit of energy above the start
+        double guess = 0.0; ///< K kg/J, first guess of t per unit of energy above the start
     };
 
-    double density = 0.0; ///< kg/m^3
-    double solidus = 0.0, liquidus = 0.0;         ///< K
-    double inverse_freezing_range = 0.0;          ///< 1/K
-    double latent_heat = 0.0;                     ///< J/kg
-    std::array<Range, 3> range;                   ///< solid, mushy, liquid
-    int newton_steps = 0;                         ///< enough for 1e-9 K over 0 .. 6000 K
+    double density = 0.0;                                 ///< kg/m^3
+    double solidus = 0.0, liquidus = 0.0;                 ///< K
+    double inverse_freezing_range = 0.0;                  ///< 1/K
+    double latent_heat = 0.0;                             ///< J/kg
+    std::array<Range, 3> range;                           ///< solid, mushy, liquid
+    int newton_steps = 0;                                 ///< enough for 1e-9 K over 0 .. 6000 K
     Polynomial solid_conductivity, liquid_conductivity;   ///< W/m/K
     Polynomial solid_heat_capacity, liquid_heat_capacity; ///< J/kg/K
 
     /// Share of liquid, 0 to 1. T in K.
     template <class Number>
-    Number liquid_fraction(const Number& temperature) const {
+    [[gnu::always_inline]] Number liquid_fraction(const Number& temperature) const {
         using std::max, std::min, std::experimental::max, std::experimental::min;
         return min(max((temperature - solidus) * inverse_freezing_range, Number(0.0)), Number(1.0));
     }
 
     /// Conductivity in W/m/K at T in K.
     template <class Number>
-    Number conductivity(const Number& temperature) const {
+    [[gnu::always_inline]] Number conductivity(const Number& temperature) const {
         return mixed(solid_conductivity, liquid_conductivity, temperature, liquid_fraction(temperature));
     }
 
     /// Tangent de/dT in J/kg/K at T in K, latent heat included.
     template <class Number>
-    Number heat_capacity(const Number& temperature) const {
-        const Number c = mixed(solid_heat_capacity, liquid_heat_capacity, temperature, liquid_fraction(temperature));
+    [[gnu::always_inline]] Number heat_capacity(const Number& temperature) const {
+        const Number c =
+            mixed(solid_heat_capacity, liquid_heat_capacity, temperature, liquid_fraction(temperature));
         const Number latent = c + latent_heat * inverse_freezing_range;
         return select(temperature >= solidus, select(temperature < liquidus, latent, c), c);
     }
 
     /// Specific internal energy in J/kg at T in K.
     template <class Number>
-    Number energy(const Number& temperature) const {
+    [[gnu::always_inline]] Number energy(const Number& temperature) const {
         const Number in_solid = energy_in(range[0], temperature);
         const Number in_mush = energy_in(range[1], temperature);
         const Number in_liquid = energy_in(range[2], temperature);
@@ -62,7 +64,7 @@ struct EquationOfState {
 
     /// Temperature in K at e in J/kg; the inverse of energy().
     template <class Number>
-    Number temperature(const Number& e) const {
+    [[gnu::always_inline]] Number temperature(const Number& e) const {
         const auto in_solid = e < range[1].energy;
         const auto in_mush = e < range[2].energy;
         const auto pick = [&](double solid, double mush, double liquid) {
@@ -87,15 +89,15 @@ struct EquationOfState {
 
   private:
     template <class Number>
-    static Number mixed(const Polynomial& solid, const Polynomial& liquid, const Number& temperature,
-                        const Number& liquid_share) {
+    [[gnu::always_inline]] static Number mixed(const Polynomial& solid, const Polynomial& liquid,
+                                               const Number& temperature, const Number& liquid_share) {
         const Number s = solid.a[0] + temperature * (solid.a[1] + temperature * solid.a[2]);
         const Number l = liquid.a[0] + temperature * (liquid.a[1] + temperature * liquid.a[2]);
         return s + liquid_share * (l - s);
     }
 
     template <class Number>
-    static Number energy_in(const Range& r, const Number& temperature) {
+    [[gnu::always_inline]] static Number energy_in(const Range& r, const Number& temperature) {
         const Number t = temperature - r.temperature;
         return r.energy + t * (r.a[0] + t * (r.a[1] + t * (r.a[2] + t * r.a[3])));
     }

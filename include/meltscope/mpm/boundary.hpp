@@ -26,16 +26,17 @@ using Boundary = std::array<FaceCondition, 6>;
 /// One face of the box seen from the storage of a nodal field: planes of nodes normal to `axis`.
 struct FacePlanes {
     int axis = 0;
-    std::int64_t ghost = 0; ///< storage coordinate along the axis of the ghost plane
-    std::int64_t face = 0;  ///< of the plane on the face
+    std::int64_t ghost = 0;  ///< storage coordinate along the axis of the ghost plane
+    std::int64_t face = 0;   ///< of the plane on the face
     std::int64_t mirror = 0; ///< of the plane inside that mirrors the ghost plane
 };
 
 /// Planes of face f (0 .. 5 in the order of Boundary).
 FacePlanes face_planes(const Grid& grid, int f);
 
-/// Calls work(a, b, c) for every node of the face's planes, ghosts of the other axes included: a, b, c are the storage
-/// indices of the ghost node, the face node and the mirror node that share the other two coordinates.
+/// Calls work(a, b, c) for every node of the face's planes, ghosts of the other axes included: a, b, c are
+/// the storage indices of the ghost node, the face node and the mirror node that share the other two
+/// coordinates.
 template <class Work>
 void for_each_face_node(const Grid& grid, int f, Work work) {
     const FacePlanes planes = face_planes(grid, f);
@@ -50,17 +51,18 @@ void for_each_face_node(const Grid& grid, int f, Work work) {
         }
 }
 
-/// Adds what was scattered to ghost nodes beyond an adiabatic face to their mirror nodes and clears the ghosts: the
-/// field then is what particles mirrored at the face would give. Beyond a face of fixed temperature it is left alone,
-/// or, with `odd_at_fixed`, taken off the mirror node (the flux of an odd temperature), or added (`even_at_fixed`).
+/// Adds what was scattered to ghost nodes beyond an adiabatic face to their mirror nodes and clears the
+/// ghosts: the field then is what particles mirrored at the face would give. Beyond a face of fixed
+/// temperature it is left alone, or, with `odd_at_fixed`, taken off the mirror node (the flux of an odd
+/// temperature), or added (`even_at_fixed`).
 enum class AtFixedFaces { leave, odd, even };
 void fold_ghosts(const Grid& grid, const Boundary& boundary, AtFixedFaces at_fixed, Field& field);
 
 /// Copies mirror nodes to the ghosts beyond all faces that do not fix the temperature.
 void mirror_ghosts(const Grid& grid, const Boundary& boundary, Field& field);
 
-/// Storage indices of all nodes on and next to faces of fixed temperature (planes ghost, face and mirror), each once,
-/// ascending.
+/// Storage indices of all nodes on and next to faces of fixed temperature (planes ghost, face and mirror),
+/// each once, ascending.
 std::vector<std::int64_t> nodes_near_fixed_faces(const Grid& grid, const Boundary& boundary);
 
 } // namespace meltscope

@@ -29,11 +29,12 @@ struct FreeSurface {
     SurfaceElements elements;
 };
 
-/// Finds the free surface. `at_surface`: heat goes in at the foot points x_s; otherwise at the particles (the seed's
-/// volume source in the band).
+/// Finds the free surface. `at_surface`: heat goes in at the foot points x_s; otherwise at the particles (the
+/// seed's volume source in the band).
 ///
-/// A node's share of the surface is A_i = dx^3 |grad phi_i| hat(phi_i), hat(s) = max(0, 1 - |s|/dx)/dx, and a particle
-/// takes a_p = sum_i A_i N_ip s_p / sum_q N_iq s_q with s_p = v_p |sum_i phi_hat_i grad N_ip| if |phi_hat_p| <= 0.45.
+/// A node's share of the surface is A_i = dx^3 |grad phi_i| hat(phi_i), hat(s) = max(0, 1 - |s|/dx)/dx, and a
+/// particle takes a_p = sum_i A_i N_ip s_p / sum_q N_iq s_q with s_p = v_p |sum_i phi_hat_i grad N_ip| if
+/// |phi_hat_p| <= 0.45.
 FreeSurface find_free_surface(const Grid& grid, const Particles& particles, const Nodes& nodes,
                               const LevelSetOptions& options, bool at_surface);
 
@@ -41,7 +42,8 @@ FreeSurface find_free_surface(const Grid& grid, const Particles& particles, cons
 /// `energy`: J a surface element, one by one.
 void deposit(const Grid& grid, const SurfaceElements& elements, std::span<const double> energy, Nodes& nodes);
 
-/// Interpolates a nodal field, its ghosts set, to each surface element, one by one: with the weights of deposit().
+/// Interpolates a nodal field, its ghosts set, to each surface element, one by one: with the weights of
+/// deposit().
 void interpolate_to_surface(const Grid& grid, const SurfaceElements& elements, const Field& field,
                             std::vector<double>& value);
 

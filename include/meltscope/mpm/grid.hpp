@@ -9,15 +9,16 @@ namespace meltscope {
 
 /// A uniform grid of nodes over a box, with one layer of ghost nodes outside each face.
 ///
-/// Node (i,j,k), 0 <= i <= cells, is at origin + dx (i,j,k); the box's faces are planes of nodes. Storage is x fastest,
-/// rows padded so that a lane group may load `lane_count` nodes from any bin of the row (see LaneLayout).
+/// Node (i,j,k), 0 <= i <= cells, is at origin + dx (i,j,k); the box's faces are planes of nodes. Storage is
+/// x fastest, rows padded so that a lane group may load `lane_count` nodes from any bin of the row (see
+/// LaneLayout).
 struct Grid {
     Vec3 origin = Vec3::Zero(); ///< m, the box's lower corner
     double dx = 0.0;            ///< m
     Index3 cells = Index3::Zero();
-    std::int64_t stride_y = 0;  ///< storage distance of neighbours in y
-    std::int64_t stride_z = 0;  ///< storage distance of neighbours in z
-    std::int64_t size = 0;      ///< doubles in a nodal field
+    std::int64_t stride_y = 0; ///< storage distance of neighbours in y
+    std::int64_t stride_z = 0; ///< storage distance of neighbours in z
+    std::int64_t size = 0;     ///< doubles in a nodal field
 
     /// Storage index of node (i,j,k), -1 <= i <= cells + 1.
     std::int64_t index(std::int64_t i, std::int64_t j, std::int64_t k) const {
@@ -39,7 +40,9 @@ struct Grid {
 
     /// Share of a node's dx^3 that lies in the box: halved for each face the node is on.
     double share_in_box(std::int64_t i, std::int64_t j, std::int64_t k) const {
-        const auto half_on_face = [](std::int64_t n, std::int64_t last) { return n == 0 || n == last ? 0.5 : 1.0; };
+        const auto half_on_face = [](std::int64_t n, std::int64_t last) {
+            return n == 0 || n == last ? 0.5 : 1.0;
+        };
         return half_on_face(i, cells[0]) * half_on_face(j, cells[1]) * half_on_face(k, cells[2]);
     }
 };

@@ -39,21 +39,28 @@ inline PointStencil point_stencil(const double* offset_x, const double* offset_y
     return stencil;
 }
 
-/// Calls `work(stencil, first_entry)` for each stencil of `group`: once for a lattice group, else once a slot. The
-/// stencil's points have the entries first_entry + point * lane_count + lane of the per-particle arrays.
+/// Calls `work(stencil, first_entry)` for each stencil of `group`: once for a lattice group, else once a
+/// slot. The stencil's points have the entries first_entry + point * lane_count + lane of the per-particle
+/// arrays.
 template <class Work>
-void for_each_stencil(const Particles& particles, const LatticeStencils& lattices, const LaneGroup& group, Work&& work) {
+void for_each_stencil(const Particles& particles, const LatticeStencils& lattices, const LaneGroup& group,
+                      Work&& work) {
     if (group.on_lattice) {
         const std::int64_t first = group.first_slot * lane_count;
         switch (particles.lattice) {
-        case 1: return work(lattices.one, first);
-        case 2: return work(lattices.two, first);
-        case 3: return work(lattices.three, first);
-        default: return work(lattices.four, first);
+        case 1:
+            return work(lattices.one, first);
+        case 2:
+            return work(lattices.two, first);
+        case 3:
+            return work(lattices.three, first);
+        default:
+            return work(lattices.four, first);
         }
     }
     for (std::int64_t slot = group.first_slot; slot < group.first_slot + group.slots; ++slot)
-        work(point_stencil(particles.offset_x.data(), particles.offset_y.data(), particles.offset_z.data(), slot),
+        work(point_stencil(particles.offset_x.data(), particles.offset_y.data(), particles.offset_z.data(),
+                           slot),
              slot * lane_count);
 }
 

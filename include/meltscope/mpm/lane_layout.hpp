@@ -8,14 +8,14 @@
 
 namespace meltscope {
 
-/// `lane_count` bins that are neighbours in x. Slot s holds the s-th point of each bin, lane = bin; slots that a bin
-/// does not fill are padding. All points of a group have one kind (for particles: the material).
+/// `lane_count` bins that are neighbours in x. Slot s holds the s-th point of each bin, lane = bin; slots
+/// that a bin does not fill are padding. All points of a group have one kind (for particles: the material).
 struct LaneGroup {
-    std::int64_t corner = 0;     ///< storage index of node (-1,-1,-1) of lane 0's bin
+    std::int64_t corner = 0; ///< storage index of node (-1,-1,-1) of lane 0's bin
     std::int64_t first_slot = 0;
     std::int32_t slots = 0;
     std::int16_t kind = 0;
-    bool on_lattice = false;     ///< slot s is the lattice point s of the bin, the same in every lane
+    bool on_lattice = false; ///< slot s is the lattice point s of the bin, the same in every lane
 };
 
 /// A range of groups that one thread works on: a few neighbouring rows in y and z.
@@ -25,14 +25,15 @@ struct LaneBlock {
 
 /// Where each point sits in a layout of lane groups.
 ///
-/// A bin is the box of side dx around a node, so all points of a bin share the same 27 nodes. Blocks of one colour have
-/// no node in common; blocks are visited colour by colour, so every node receives its sums in an order that does not
-/// depend on the number of threads.
+/// A bin is the box of side dx around a node, so all points of a bin share the same 27 nodes. Blocks of one
+/// colour have no node in common; blocks are visited colour by colour, so every node receives its sums in an
+/// order that does not depend on the number of threads.
 struct LaneLayout {
     std::vector<LaneGroup> groups;
-    std::vector<LaneBlock> blocks;             ///< sorted by colour
-    std::array<std::int64_t, 5> colour_start{}; ///< blocks of colour c are colour_start[c] .. colour_start[c+1]
-    std::vector<std::int64_t> place;           ///< of each point: slot * lane_count + lane
+    std::vector<LaneBlock> blocks; ///< sorted by colour
+    std::array<std::int64_t, 5>
+        colour_start{};              ///< blocks of colour c are colour_start[c] .. colour_start[c+1]
+    std::vector<std::int64_t> place; ///< of each point: slot * lane_count + lane
     std::int64_t slots = 0;
 
     std::int64_t size() const { return slots * lane_count; } ///< entries of a per-point array in this layout
@@ -47,11 +48,11 @@ struct BinPlace {
 /// The bin of a point inside the box; points on the box's faces belong to the bins of the face's nodes.
 BinPlace bin_place(const Grid& grid, const Vec3& point);
 
-/// Lays the points out. `kind` is empty (all 0) or one entry a point. With `lattice` = n > 0, groups of which every
-/// point is on the lattice of n x n x n points a cell (cell fractions (a + 1/2)/n) are laid out as lattice groups.
-/// Throws std::out_of_range if a point lies outside the box.
-LaneLayout make_lane_layout(const Grid& grid, std::span<const Vec3> points, std::span<const std::int16_t> kind,
-                            int lattice);
+/// Lays the points out. `kind` is empty (all 0) or one entry a point. With `lattice` = n > 0, groups of which
+/// every point is on the lattice of n x n x n points a cell (cell fractions (a + 1/2)/n) are laid out as
+/// lattice groups. Throws std::out_of_range if a point lies outside the box.
+LaneLayout make_lane_layout(const Grid& grid, std::span<const Vec3> points,
+                            std::span<const std::int16_t> kind, int lattice);
 
 /// Offsets from the nearest node, in cells, of the n lattice points in a bin along one axis, ascending.
 std::vector<double> lattice_offsets(int n);

@@ -12,19 +12,19 @@ namespace meltscope {
 
 /// Nodal fields of the step, all grid.size long.
 ///
-/// A node has one temperature. With several materials its energy is shared out so that all are at that temperature:
-/// sum_A m_iA e_A(T_i) = (m e)_i, which for constant heat capacities is their capacity-weighted mean temperature and
-/// conserves energy exactly. So specific energies are kept a field a material.
+/// A node has one temperature. With several materials its energy is shared out so that all are at that
+/// temperature: sum_A m_iA e_A(T_i) = (m e)_i, which for constant heat capacities is their capacity-weighted
+/// mean temperature and conserves energy exactly. So specific energies are kept a field a material.
 struct Nodes {
     Field mass;                ///< m_i, kg; ghosts beyond faces that do not fix the temperature are folded in
     Field inertia;             ///< m_i with all ghosts folded in; empty unless a face fixes the temperature
     Field mass_energy;         ///< (m e)_i, J
     Field temperature;         ///< T_i, K
     Field increment;           ///< D_i, J
-    std::vector<Field> energy;     ///< e_i of each material, J/kg; after step 6: e_i* - (1 - b) e_i
-    std::vector<Field> new_energy; ///< e_i* of each material, J/kg
-    std::vector<Field> material_mass; ///< m_i of each material, kg; empty with one material
-    std::vector<std::int64_t> mixed;  ///< nodes that hold several materials, ascending
+    std::vector<Field> energy; ///< e_i of each material, J/kg; after step 6: e_i* - (1 - b) e_i
+    std::vector<Field> new_energy;              ///< e_i* of each material, J/kg
+    std::vector<Field> material_mass;           ///< m_i of each material, kg; empty with one material
+    std::vector<std::int64_t> mixed;            ///< nodes that hold several materials, ascending
     std::vector<std::int64_t> near_fixed_faces; ///< see nodes_near_fixed_faces
 
     bool several_materials() const { return !material_mass.empty(); }
@@ -33,20 +33,20 @@ struct Nodes {
 /// Node masses and all else that follows from where the particles are. Mass-energies are zero afterwards.
 Nodes make_nodes(const Grid& grid, const Particles& particles, int materials, const Boundary& boundary);
 
-/// Step 3, P2G: (m e)_i = sum_p N_ip m_p (e_p + g_p . (x_i - x_p)), g_p = sum_i e_i grad N_ip of `gradient_of`, a field
-/// a material; without it g_p = 0. Used where step 7's fused pass has not done it: at the start and after a change of
-/// the particles.
+/// Step 3, P2G: (m e)_i = sum_p N_ip m_p (e_p + g_p . (x_i - x_p)), g_p = sum_i e_i grad N_ip of
+/// `gradient_of`, a field a material; without it g_p = 0. Used where step 7's fused pass has not done it: at
+/// the start and after a change of the particles.
 void particles_to_grid(const Grid& grid, const Particles& particles, const std::vector<Field>* gradient_of,
                        Nodes& nodes);
 
-/// Step 4, Favre mean: e_i = (m e)_i / m_i and T_i = T(e_i); faces of fixed temperature get theirs, ghosts follow.
-/// A node without mass has e = T = 0 and gives nothing.
+/// Step 4, Favre mean: e_i = (m e)_i / m_i and T_i = T(e_i); faces of fixed temperature get theirs, ghosts
+/// follow. A node without mass has e = T = 0 and gives nothing.
 void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
                 Nodes& nodes);
 
 /// The temperature in K at which the materials of a node together hold `total` J: sum_A m_iA e_A(T) = total.
-double mixture_temperature(const std::vector<EquationOfState>& materials, const std::vector<Field>& material_mass,
-                           std::int64_t node, double total);
+double mixture_temperature(const std::vector<EquationOfState>& materials,
+                           const std::vector<Field>& material_mass, std::int64_t node, double total);
 
 /// Adds sum_p N_ip value_p of a per-particle array (layout order) to `field`.
 void scatter_to_nodes(const Grid& grid, const Particles& particles, const Field& value, Field& field);

@@ -20,24 +20,26 @@ struct ParticleList {
     std::int64_t size() const { return std::int64_t(position.size()); }
 };
 
-/// Particles as the step works on them. What never changes stays one by one, in the order of ids; what the passes read
-/// is kept in the order of a lane layout, padding with zero mass and volume: entry layout.place[q] is particle q's.
+/// Particles as the step works on them. What never changes stays one by one, in the order of ids; what the
+/// passes read is kept in the order of a lane layout, padding with zero mass and volume: entry
+/// layout.place[q] is particle q's.
 struct Particles {
     std::vector<Vec3> position;         ///< x_p, m; one by one
     std::vector<std::int64_t> id;       ///< one by one, ascending
     std::vector<std::int16_t> material; ///< one by one
 
     LaneLayout layout;
-    int lattice = 0;         ///< points a cell along an axis of the lattice groups
+    int lattice = 0;                    ///< points a cell along an axis of the lattice groups
     Field offset_x, offset_y, offset_z; ///< x_p from the bin's node, in cells
-    Field mass;              ///< m_p, kg
-    Field volume;            ///< v_p, m^3
-    Field specific_energy;   ///< e_p, J/kg
+    Field mass;                         ///< m_p, kg
+    Field volume;                       ///< v_p, m^3
+    Field specific_energy;              ///< e_p, J/kg
 
     std::int64_t count() const { return std::int64_t(id.size()); }
 };
 
-/// Lays particles out. `lattice`: see make_lane_layout. Throws std::out_of_range if one lies outside the grid's box.
+/// Lays particles out. `lattice`: see make_lane_layout. Throws std::out_of_range if one lies outside the
+/// grid's box.
 Particles make_particles(const Grid& grid, ParticleList list, int lattice);
 
 /// The particles one by one again, with their present energies.

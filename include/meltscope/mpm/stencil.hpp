@@ -7,8 +7,9 @@
 
 namespace meltscope {
 
-/// Quadratic B-spline on unit spacing: N(r) = 3/4 - r^2 for |r| <= 1/2, (3/2 - |r|)^2 / 2 for 1/2 < |r| <= 3/2.
-/// `offset` r of a point from its nearest node, -1/2 <= r <= 1/2; weights of the nodes -1, 0, +1 around that node.
+/// Quadratic B-spline on unit spacing: N(r) = 3/4 - r^2 for |r| <= 1/2, (3/2 - |r|)^2 / 2 for 1/2 < |r| <=
+/// 3/2. `offset` r of a point from its nearest node, -1/2 <= r <= 1/2; weights of the nodes -1, 0, +1 around
+/// that node.
 template <class Number>
 struct BSpline {
     std::array<Number, 3> value;      ///< N
@@ -47,10 +48,10 @@ struct NodeSums {
     }
 };
 
-/// Transfer between the 27 nodes around a bin and n x n x n points in it that form a tensor product (x_a, y_b, z_c),
-/// for `lane_count` bins that are neighbours in x. Weights are doubles where all bins hold the same points (a lattice),
-/// Lanes where every bin has its own (then n = 1). Sums are contracted axis by axis: x, y, z on the way to the points,
-/// z, y, x on the way back, which is what makes a lattice cheap.
+/// Transfer between the 27 nodes around a bin and n x n x n points in it that form a tensor product (x_a,
+/// y_b, z_c), for `lane_count` bins that are neighbours in x. Weights are doubles where all bins hold the
+/// same points (a lattice), Lanes where every bin has its own (then n = 1). Sums are contracted axis by axis:
+/// x, y, z on the way to the points, z, y, x on the way back, which is what makes a lattice cheap.
 template <int n, class Weight>
 struct Stencil {
     static constexpr int points = n * n * n;
@@ -85,7 +86,8 @@ struct Stencil {
     }
 
     /// The same with sum_i f_i dN_i along x, y and z, per unit spacing.
-    void gather(const double* first, std::int64_t stride_y, std::int64_t stride_z, Gathered<n>& at_points) const {
+    void gather(const double* first, std::int64_t stride_y, std::int64_t stride_z,
+                Gathered<n>& at_points) const {
         std::array<Lanes, n * n * 3> xy, dx_y, x_dy; // [a,b,k]
         for (int k = 0; k < 3; ++k) {
             std::array<Lanes, n * 3> x, dx; // [a,j]
@@ -121,7 +123,8 @@ struct Stencil {
         scatter<false>(&BSpline<Weight>::derivative, v, nodes);
     }
 
-    /// Adds sum_p N_i (s_p + v_p . (x_i - x_p)) to the node sums (affine P2G), v per unit spacing, s in v.value.
+    /// Adds sum_p N_i (s_p + v_p . (x_i - x_p)) to the node sums (affine P2G), v per unit spacing, s in
+    /// v.value.
     void scatter_affine(const Gathered<n>& v, NodeSums& nodes) const {
         scatter<true>(&BSpline<Weight>::moment, v, nodes);
     }

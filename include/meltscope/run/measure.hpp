@@ -8,11 +8,13 @@ namespace meltscope {
 /// Which particles a snapshot holds.
 enum class ParticleSelection { none, surface, melt, all };
 
-/// Takes a snapshot of the run as it stands. Node temperatures are the interpolated field's values at the nodes.
+/// Takes a snapshot of the run as it stands. Node temperatures are the interpolated field's values at the
+/// nodes.
 Snapshot take_snapshot(const Simulation& simulation, ParticleSelection particles);
 
-/// Length, width, depth and volume of the region hotter than `isotherm` (K) in the material, with linear interpolation
-/// along the grid's edges. `along` is the horizontal scan direction (zero: x). All zero if nothing is that hot.
+/// Length, width, depth and volume of the region hotter than `isotherm` (K) in the material, with linear
+/// interpolation along the grid's edges. `along` is the horizontal scan direction (zero: x). All zero if
+/// nothing is that hot.
 PoolFigures measure_pool(const NodeLattice& nodes, const std::vector<double>& temperature,
                          const std::vector<double>& phi, double isotherm, const Vec3& along);
 

@@ -14,14 +14,15 @@ namespace meltscope {
 
 /// Which numerical forms and physical effects are on. Steerable between steps, but for transfer and deposit.
 struct PhysicsOptions {
-    bool affine_transfer = true;          ///< false: the seed's values alone (FLIP)
-    bool deposit_at_surface = true;       ///< false: in the band, at the particles
-    bool diffuse_energy = false;          ///< the seed's form of the flux; one material only
-    std::optional<double> blend_time;     ///< s, tau of b = min(1, dt/tau); default: dx^2/alpha_max (affine), never (flip)
+    bool affine_transfer = true;    ///< false: the seed's values alone (FLIP)
+    bool deposit_at_surface = true; ///< false: in the band, at the particles
+    bool diffuse_energy = false;    ///< the seed's form of the flux; one material only
+    std::optional<double>
+        blend_time; ///< s, tau of b = min(1, dt/tau); default: dx^2/alpha_max (affine), never (flip)
     bool radiation = false;
     bool evaporation = false;
     bool reabsorption = false;
-    double ambient = 298.15;              ///< K
+    double ambient = 298.15; ///< K
 };
 
 /// How time advances.
@@ -46,15 +47,16 @@ struct RunParameters {
 /// What ruled the size of a step.
 enum class StepLimit { diffusion, beam, max_step, landing };
 
-/// A run in progress: given parameters, state, and what is derived from both. The state proper is time, step, ledger,
-/// particles and the nodes' mass-energy (m e)_i, which carries what step 3 has gathered for the next step.
+/// A run in progress: given parameters, state, and what is derived from both. The state proper is time, step,
+/// ledger, particles and the nodes' mass-energy (m e)_i, which carries what step 3 has gathered for the next
+/// step.
 struct Simulation {
     RunParameters parameters;
     Grid grid;
 
     double time = 0.0; ///< s
     std::int64_t step = 0;
-    double dt = 0.0;   ///< s, of the last step
+    double dt = 0.0;                        ///< s, of the last step
     StepLimit limit = StepLimit::diffusion; ///< of the last step
     Ledger ledger;
     Particles particles;
@@ -66,18 +68,19 @@ struct Simulation {
     std::vector<LightMap> light_maps; ///< one a laser
 
     // Of the last step, for the log and the tables.
-    double peak_temperature = 0.0;   ///< K, hottest node
-    double coldest_temperature = 0.0; ///< K, coldest node with mass
+    double peak_temperature = 0.0;      ///< K, hottest node
+    double coldest_temperature = 0.0;   ///< K, coldest node with mass
     std::vector<Absorption> absorption; ///< one a laser
     double seconds_in_level_set = 0.0;  ///< wall time spent on the free surface and the light maps
 };
 
-/// Starts a run. `lattice`: points a cell along an axis that `particles` sit on, 0 for none (see make_lane_layout).
-/// Throws std::invalid_argument for parameters that make no sense together, std::out_of_range for particles outside.
+/// Starts a run. `lattice`: points a cell along an axis that `particles` sit on, 0 for none (see
+/// make_lane_layout). Throws std::invalid_argument for parameters that make no sense together,
+/// std::out_of_range for particles outside.
 Simulation make_simulation(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice);
 
-/// Goes on from a saved state: as make_simulation, then time, step, dt, ledger and the mass-energy of the nodes
-/// (grid.size doubles as saved from nodes.mass_energy) are put back.
+/// Goes on from a saved state: as make_simulation, then time, step, dt, ledger and the mass-energy of the
+/// nodes (grid.size doubles as saved from nodes.mass_energy) are put back.
 Simulation resume_simulation(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice,
                              double time, std::int64_t step, double dt, const Ledger& ledger,
                              const Field& mass_energy);
@@ -85,25 +88,26 @@ Simulation resume_simulation(RunParameters parameters, const Grid& grid, Particl
 /// The largest step that is stable and follows the beams, s, and which limit rules.
 double largest_step(const Simulation& simulation, StepLimit& limit);
 
-/// One step, towards `target` (s, later than now) and never beyond it; lands on it and on the corners of the scan paths
-/// exactly. Steps 3 to 7 of the method; see simulation.cpp.
+/// One step, towards `target` (s, later than now) and never beyond it; lands on it and on the corners of the
+/// scan paths exactly. Steps 3 to 7 of the method; see simulation.cpp.
 void advance(Simulation& simulation, double target);
 
-/// Makes the free surface and the light maps anew after a laser's direction, the lasers or the level-set options were
-/// changed.
+/// Makes the free surface and the light maps anew after a laser's direction, the lasers or the level-set
+/// options were changed.
 void update_geometry(Simulation& simulation);
 
 /// Makes the nodes anew after face conditions were changed.
 void update_boundary(Simulation& simulation);
 
-/// Adds particles (a powder layer) at their own energies; ids must go on from the last. The energies of those that are
-/// there are untouched. Throws std::out_of_range if one lies outside the box.
+/// Adds particles (a powder layer) at their own energies; ids must go on from the last. The energies of those
+/// that are there are untouched. Throws std::out_of_range if one lies outside the box.
 void add_particles(Simulation& simulation, const ParticleList& more);
 
 /// Works out what the particles hold now and puts it into the ledger.
 void balance(Simulation& simulation);
 
-/// Largest difference, K, between the temperature of a particle's own energy and that interpolated from the nodes.
+/// Largest difference, K, between the temperature of a particle's own energy and that interpolated from the
+/// nodes.
 double energy_spread(const Simulation& simulation);
 
 /// Power in W that a laser emits at a time, and where its beam is.

@@ -145,13 +145,7 @@ void draw_color_bar(Canvas& canvas, const Picture& picture, const Rect& area) {
     style.max_width = area.width;
     canvas.text({area.x, area.y + area.height}, field_title(picture.field), style);
 
-    const int strips = std::max(2, static_cast<int>(bar.height));
-    for (int i = 0; i < strips; ++i) {
-        double rgb[3];
-        picture.colors->GetColor(low + (high - low) * (i + 0.5) / strips, rgb);
-        canvas.fill({bar.x, bar.y + bar.height * i / strips, bar.width, bar.height / strips + 0.5},
-                    {rgb[0], rgb[1], rgb[2]});
-    }
+    canvas.gradient(bar, picture.colors);
     canvas.frame(bar, picture.theme->muted, 0.6 * picture.line);
 
     const Snapshot& snapshot = *picture.instant->snapshot;

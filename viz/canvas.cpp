@@ -7,8 +7,10 @@
 #include <vtkContext2D.h>
 #include <vtkContextItem.h>
 #include <vtkContextScene.h>
+#include <vtkImageData.h>
 #include <vtkObjectFactory.h>
 #include <vtkPen.h>
+#include <vtkRect.h>
 #include <vtkTextProperty.h>
 #include <vtkTextRenderer.h>
 
@@ -124,6 +126,27 @@ void Canvas::frame(const Rect& rect, const Rgb& color, double width) {
           {rect.x, rect.y + rect.height},
           {rect.x, rect.y}},
          color, width);
+}
+
+void Canvas::gradient(const Rect& rect, vtkLookupTable* colors) {
+    const auto rows = static_cast<int>(colors->GetNumberOfTableValues());
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->SetDimensions(2, rows, 1);
+    image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    for (int row = 0; row < rows; ++row) {
+        const double* rgba = colors->GetTableValue(row);
+        for (int column = 0; column < 2; ++column) {
+            for (int channel = 0; channel < 3; ++channel) {
+                image->SetScalarComponentFromDouble(column, row, 0, channel,
+                                                    std::lround(255.0 * rgba[channel]));
+            }
+        }
+    }
+    item_->commands.emplace_back([rect, image](vtkContext2D* painter) {
+        painter->DrawImage(vtkRectf(static_cast<float>(rect.x), static_cast<float>(rect.y),
+                                    static_cast<float>(rect.width), static_cast<float>(rect.height)),
+                           image);
+    });
 }
 
 void Canvas::triangle(const std::array<Pixel, 3>& corners, const Rgb& color) {

@@ -53,6 +53,8 @@ class Canvas {
     void line(const std::vector<Pixel>& points, const Rgb& color, double width);
     void fill(const Rect& rect, const Rgb& color, double opacity = 1.0);
     void frame(const Rect& rect, const Rgb& color, double width);
+    /// The colours of a table from its low end at the bottom to its high end at the top.
+    void gradient(const Rect& rect, vtkLookupTable* colors);
     void triangle(const std::array<Pixel, 3>& corners, const Rgb& color);
     /// Width and height of a text, pixels.
     static std::array<double, 2> extent(const std::string& words, const TextStyle& style);

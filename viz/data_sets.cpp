@@ -234,10 +234,11 @@ std::shared_ptr<const Geometry> make_geometry(const NodeLattice& nodes, const Sh
     geometry->nodes = nodes;
     geometry->free_surface = isosurface(nodes, *phi, 0.0, true, nullptr, nullptr);
     WallBuilder walls(geometry->nodes, *phi);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        walls.add_face(axis, false);
-        walls.add_face(axis, true);
+    for (const std::size_t side : {0U, 1U}) {
+        walls.add_face(side, false);
+        walls.add_face(side, true);
     }
+    walls.add_face(2, true);
     geometry->walls = walls.take();
     geometry->heights = HeightMap(nodes, *phi);
     find_material_box(*geometry);

@@ -18,8 +18,7 @@ struct Geometry {
     SharedField phi;
     NodeLattice nodes;
     vtkSmartPointer<vtkPolyData> free_surface; ///< phi = 0 with outward point normals
-    vtkSmartPointer<vtkPolyData>
-        walls; ///< where the material is cut by the faces of the domain, with normals
+    vtkSmartPointer<vtkPolyData> walls; ///< where the domain's sides and top cut the material, with normals
     HeightMap heights;
     Vec3 lower = Vec3::Zero(); ///< m, box around the material
     Vec3 upper = Vec3::Zero(); ///< m

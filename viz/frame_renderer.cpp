@@ -28,7 +28,6 @@ namespace meltscope::viz {
 
 namespace {
 
-constexpr int samples_a_pixel = 4;
 constexpr int dots_per_inch = 72; // a font of n points is n pixels high
 constexpr int png_compression = 2;
 constexpr const char* time_key = "time_s";
@@ -121,7 +120,7 @@ struct FrameRenderer::Impl {
             window->SetDisplayId(display->x_display());
         }
         window->SetOffScreenRendering(1);
-        window->SetMultiSamples(samples_a_pixel);
+        window->SetMultiSamples(0); // panels smooth their edges themselves
         window->SetDPI(dots_per_inch);
         window->SetNumberOfLayers(3);
         background->SetLayer(0);

@@ -60,6 +60,8 @@ Vec3 track_direction(const BeamSnapshot* beam) {
 
 Panel::Panel() {
     renderer_->SetLayer(1);
+    // Smooths edges at a fifth of the cost of multisampling with a software renderer.
+    renderer_->UseFXAAOn();
     renderer_->InteractiveOff();
     renderer_->AutomaticLightCreationOff();
     // Fixed to the scene: from above, a little from the front left, so that faces turned up are the

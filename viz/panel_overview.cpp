@@ -14,7 +14,9 @@ class OverviewPanel : public Panel {
         const Geometry& geometry = *picture.instant->geometry;
         surface_.update(picture.surface, picture);
         walls_.update(picture.walls, picture);
-        edges_.update(make_box_edges(geometry.lower, geometry.upper), picture.theme->muted,
+        // A little outside, so that the part does not hide half of each line.
+        const Vec3 gap = Vec3::Constant(0.0008 * (geometry.upper - geometry.lower).norm());
+        edges_.update(make_box_edges(geometry.lower - gap, geometry.upper + gap), picture.theme->muted,
                       0.5 * picture.line);
 
         // The longer side faces the viewer.

@@ -99,7 +99,8 @@ TEST_F(Pictures, same_instant_gives_same_picture_and_wrong_range_does_not) {
         options.color_range = {{300.0, 900.0}};
         EXPECT_GT(difference(reference, picture(view, 600e-6)), 0.5) << view;
         options.color_range = {{300.0, 2000.0}};
-        EXPECT_GT(difference(reference, picture(view, 900e-6)), 0.2) << view << " at another time";
+        // The section follows the laser: little but the clock differs.
+        EXPECT_GT(difference(reference, picture(view, 900e-6)), 0.02) << view << " at another time";
     }
 }
 

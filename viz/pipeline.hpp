@@ -29,6 +29,11 @@ struct PipelineStats {
     std::string failure;      ///< empty, or the failure after which pictures or files stopped
 };
 
+/// About how many bytes the data files of one such instant take without compression; the pool, which is not
+/// there yet at the start, counts for a tenth of the free surface. Throws VizError for an incomplete
+/// snapshot.
+std::uint64_t estimate_file_bytes(const Snapshot& snapshot, const FileOptions& options);
+
 /// Turns snapshots into pictures and files on a thread of its own, which owns the render window for the whole
 /// run. Nothing that goes wrong there reaches the caller: the first failure of the pictures and the first of
 /// the files are each told once through `warn`, and the run goes on without them. All members may be called

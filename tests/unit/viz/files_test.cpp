@@ -99,6 +99,31 @@ TEST(Files, a_resumed_run_has_no_time_twice_and_loses_no_file) {
     EXPECT_EQ(entries[2].file, "surface/surface_000002.vtp");
 }
 
+TEST(Files, their_size_is_foretold_within_a_quarter) {
+    const test::ScratchFolder scratch;
+    FileOptions files;
+    files.run_dir = scratch.path();
+    files.grid = true;
+    RenderOptions render;
+    render.run_dir = scratch.path();
+    test::SyntheticPlate plate;
+    plate.count = {121, 61, 31};
+    const auto snapshot = test::make_snapshot(plate, 3e-4);
+    for (const Precision precision : {Precision::float32, Precision::float64}) {
+        files.precision = precision;
+        {
+            Pipeline pipeline(files, render, Backend::none, {}, {});
+            pipeline.submit(snapshot, false, true);
+        }
+        std::uintmax_t bytes = 0;
+        for (const auto& file : std::filesystem::recursive_directory_iterator(scratch.path())) {
+            bytes += file.is_regular_file() ? file.file_size() : 0;
+        }
+        const auto foretold = static_cast<double>(estimate_file_bytes(*snapshot, files));
+        EXPECT_NEAR(foretold, static_cast<double>(bytes), 0.25 * static_cast<double>(bytes));
+    }
+}
+
 TEST(Files, kinds_that_are_switched_off_are_not_written) {
     const test::ScratchFolder scratch;
     FileOptions files;

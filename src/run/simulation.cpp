@@ -1,5 +1,7 @@
 #include "meltscope/run/simulation.hpp"
 
+#include "meltscope/mpm/face_flux.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -45,7 +47,7 @@ double max_diffusivity(const Simulation& s) {
     double alpha = 0.0;
     for (const EquationOfState& eos : s.eos)
         alpha = std::max(alpha, max_diffusivity(eos, coldest, hottest));
-    return alpha;
+    return alpha / s.least_packing;
 }
 
 StepOptions step_options(const Simulation& s, double dt) {
@@ -87,15 +89,90 @@ void deposit_laser_heat(Simulation& s, double dt) {
     deposit(s.grid, elements, energy, s.nodes);
 }
 
+LossOptions loss_options(const PhysicsOptions& physics) {
+    return {physics.radiation, physics.evaporation, physics.convection, physics.ambient};
+}
+
+/// Step 5, what the surface loses, and what it takes in again of its own radiation. After all other heat,
+/// because the losses are implicit in the temperature that the step leads to.
+void deposit_losses(Simulation& s, double dt) {
+    if (s.loss_laws.empty())
+        return;
+    const SurfaceElements& elements = s.surface.elements;
+    std::vector<double> temperature, gain;
+    surface_temperatures(s.grid, elements, s.nodes, temperature);
+    std::vector<double> energy(elements.count(), 0.0); // J
+    if (s.exchange) {
+        const double power =
+            reabsorbed_power(*s.exchange, elements, temperature, s.parameters.physics.ambient, energy);
+        for (double& e : energy)
+            e *= dt;
+        deposit(s.grid, elements, energy, s.nodes);
+        s.ledger.radiated -= power * dt;
+        std::fill(energy.begin(), energy.end(), 0.0);
+    }
+    surface_gains(s.grid, s.parameters.boundary, elements, s.loss_elements, s.nodes, gain);
+    const LossEnergy lost =
+        lose_heat(s.loss_laws, s.eos, elements, s.loss_elements, temperature, gain, dt, energy);
+    deposit(s.grid, elements, energy, s.nodes);
+    s.ledger.radiated += lost.radiated;
+    s.ledger.convected += lost.convected;
+    s.ledger.evaporated += lost.evaporated;
+}
+
+/// Step 5, faces of the box that convect or have a flux set.
+void deposit_face_heat(Simulation& s, double dt) {
+    const auto through = [](const FaceCondition& face) {
+        return face.kind == FaceCondition::Kind::convection || face.kind == FaceCondition::Kind::fixed_flux;
+    };
+    const Boundary& boundary = s.parameters.boundary;
+    if (std::none_of(boundary.begin(), boundary.end(), through))
+        return;
+    const std::array<double, 6> in = deposit_face_fluxes(s.grid, boundary, s.eos, dt, s.nodes);
+    for (int f = 0; f < 6; ++f) {
+        if (boundary[f].kind == FaceCondition::Kind::convection)
+            s.ledger.convected -= in[f];
+        else
+            s.ledger.face_flux_in += in[f];
+    }
+}
+
+void make_losses(Simulation& s) {
+    const PhysicsOptions& physics = s.parameters.physics;
+    s.loss_laws.clear();
+    s.exchange.reset();
+    if (!loss_options(physics).any())
+        return;
+    s.loss_laws = make_loss_laws(s.parameters.materials, loss_options(physics));
+    s.loss_elements =
+        make_loss_elements(s.grid, s.parameters.boundary, s.particles, s.surface.elements, s.nodes);
+    if (physics.reabsorption)
+        s.exchange = make_radiative_exchange(s.grid, s.surface, s.particles, s.parameters.materials, {});
+}
+
+/// Powder that has melted keeps its mass and conducts as bulk: its diffusivity is larger by 1/packing.
+double least_packing(const Particles& particles, const std::vector<EquationOfState>& eos) {
+    double least = 1.0;
+    if (!particles.powder.empty())
+        for (std::int64_t q = 0; q < particles.count(); ++q) {
+            const std::int64_t at = particles.layout.place[q];
+            least = std::min(least, particles.mass[at] /
+                                        (particles.volume[at] * eos[particles.material[q]].density));
+        }
+    return least;
+}
+
 /// Makes what follows from the particles' places: node masses, free surface, light maps.
 void make_derived(Simulation& s) {
     const auto begin = std::chrono::steady_clock::now();
+    s.least_packing = least_packing(s.particles, s.eos);
     s.nodes = make_nodes(s.grid, s.particles, int(s.eos.size()), s.parameters.boundary);
     s.surface = find_free_surface(s.grid, s.particles, s.nodes, s.parameters.level_set,
                                   s.parameters.physics.deposit_at_surface);
     s.light_maps.clear();
     for (const Laser& laser : s.parameters.lasers)
         s.light_maps.push_back(make_light_map(s.grid, s.surface, laser.direction));
+    make_losses(s);
     s.seconds_in_level_set += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
@@ -186,6 +263,8 @@ void advance(Simulation& s, double target) {
     // step.
     diffuse(s.grid, s.particles, s.eos, options, dt, s.nodes); // 5
     deposit_laser_heat(s, dt);                                 // 5
+    deposit_losses(s, dt);                                     // 5
+    deposit_face_heat(s, dt);                                  // 5
     s.ledger.conducted_out -=
         update_grid_energy(s.grid, s.particles, s.eos, s.parameters.boundary, options, dt, s.nodes); // 6
     grid_to_particles_to_grid(s.grid, options, s.particles, s.nodes); // 7, and 3 of the next step
@@ -204,6 +283,12 @@ void update_geometry(Simulation& s) {
     make_derived(s);
     s.nodes.mass_energy = mass_energy;
     find_node_state(s);
+}
+
+void update_losses(Simulation& s) {
+    make_loss_laws(s.parameters.materials,
+                   loss_options(s.parameters.physics)); // throws before anything changes
+    make_losses(s);
 }
 
 void update_boundary(Simulation& s) {
@@ -232,6 +317,11 @@ void add_particles(Simulation& s, const ParticleList& more) {
     append(all.specific_energy, more.specific_energy);
     append(all.id, more.id);
     append(all.material, more.material);
+    if (!all.powder.empty() || !more.powder.empty()) {
+        all.powder.resize(s.particles.count(), 0);
+        append(all.powder, more.powder);
+        all.powder.resize(all.id.size(), 0);
+    }
     s.particles = make_particles(s.grid, std::move(all), s.particles.lattice);
     make_derived(s);
     s.nodes.mass_energy = std::move(mass_energy);

@@ -16,7 +16,8 @@ constexpr double most_outputs = 999999.0; // names of files carry six digits
 
 PhysicsSpec read_physics(const Section& root) {
     const Section section = root.section("physics", {"diffusion", "transfer", "deposit", "blend_time",
-                                                     "radiation", "evaporation", "reabsorption", "ambient"});
+                                                     "radiation", "evaporation", "reabsorption", "convection",
+                                                     "ambient"});
     PhysicsSpec physics;
     physics.diffusion = section.choice("diffusion", words::diffusion, physics.diffusion);
     physics.transfer = section.choice("transfer", words::transfer, physics.transfer);
@@ -31,6 +32,8 @@ PhysicsSpec read_physics(const Section& root) {
     if (physics.reabsorption && !physics.radiation) {
         section.fail("reabsorption", "needs radiation = true: it is radiation that is absorbed again");
     }
+    physics.convection =
+        section.in_range("convection", quantity::heat_transfer_coefficient, 0.0, no_limit, physics.convection);
     physics.ambient =
         section.above("ambient", quantity::temperature, 0.0, highest_temperature, physics.ambient);
     return physics;

@@ -102,6 +102,7 @@ RunParameters run_parameters(const Scenario& scenario) {
     p.physics.radiation = scenario.physics.radiation;
     p.physics.evaporation = scenario.physics.evaporation;
     p.physics.reabsorption = scenario.physics.reabsorption;
+    p.physics.convection = scenario.physics.convection;
     p.physics.ambient = scenario.physics.ambient;
     p.level_set = {scenario.level_set.radius, scenario.level_set.epsilon};
     p.time = {scenario.time.end, scenario.time.cfl, scenario.time.max_step};

@@ -193,6 +193,7 @@ void write_physics(Writer& writer, const PhysicsSpec& physics) {
     writer.put("radiation", physics.radiation);
     writer.put("evaporation", physics.evaporation);
     writer.put("reabsorption", physics.reabsorption);
+    writer.put("convection", physics.convection);
     writer.put("ambient", physics.ambient);
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "meltscope/beam/illumination.hpp"
+#include "meltscope/beam/radiative_exchange.hpp"
+#include "meltscope/beam/surface_losses.hpp"
 #include "meltscope/material/equation_of_state.hpp"
 #include "meltscope/mpm/free_surface.hpp"
 #include "meltscope/mpm/thermal_step.hpp"
@@ -22,6 +24,7 @@ struct PhysicsOptions {
     bool radiation = false;
     bool evaporation = false;
     bool reabsorption = false;
+    double convection = 0.0; ///< W/m^2/K, h of the free surface; zero: none
     double ambient = 298.15; ///< K
 };
 
@@ -64,8 +67,12 @@ struct Simulation {
 
     // Derived from the parameters and the particles' places; made anew when these change.
     std::vector<EquationOfState> eos;
+    double least_packing = 1.0; ///< density of the lightest homogenised powder by that of its bulk
     FreeSurface surface;
     std::vector<LightMap> light_maps; ///< one a laser
+    std::vector<LossLaw> loss_laws;   ///< one a material; empty while no loss is on
+    LossElements loss_elements;       ///< set while a loss is on
+    std::optional<RadiativeExchange> exchange; ///< set while reabsorption is on
 
     // Of the last step, for the log and the tables.
     double peak_temperature = 0.0;      ///< K, hottest node
@@ -95,6 +102,10 @@ void advance(Simulation& simulation, double target);
 /// Makes the free surface and the light maps anew after a laser's direction, the lasers or the level-set
 /// options were changed.
 void update_geometry(Simulation& simulation);
+
+/// Takes over changed losses: radiation, evaporation, reabsorption, convection, ambient. Throws std::invalid_argument if
+/// a material lacks what a loss needs; the simulation is then as before.
+void update_losses(Simulation& simulation);
 
 /// Makes the nodes anew after face conditions were changed.
 void update_boundary(Simulation& simulation);

@@ -72,6 +72,7 @@ struct PhysicsSpec {
     bool radiation = false;
     bool evaporation = false;
     bool reabsorption = false; ///< of radiation by surfaces that see each other; needs radiation
+    double convection = 0.0;   ///< W/m^2/K, heat transfer coefficient of the free surface
     double ambient = 298.15;   ///< K, of the surroundings
 };
 

@@ -15,6 +15,11 @@ namespace {
 /// Elements that are added up together; fixed, so that sums do not depend on the number of threads.
 constexpr std::int64_t elements_in_chunk = 2048;
 
+/// Evaporation is taken as linear in the temperature over a step where it cannot change its own flux by more
+/// than a share of weak_evaporation, and where what else heats the element cannot change it by more than
+/// weak_change.
+constexpr double weak_evaporation = 0.01, weak_change = 0.1;
+
 double required(const std::optional<double>& value, const Material& material, const char* key,
                 const char* loss) {
     if (!value)
@@ -97,15 +102,33 @@ LossEnergy element_loss(const LossLaw& law, const EquationOfState& eos, double a
     const double a_dt = area * dt;
     const double radiative = radiative_coefficient(law, temperature);
     const double s = radiative + law.convection;
-    const double c = eos.heat_capacity(temperature);
-    const bool may_evaporate = law.evaporation > 0.0 && (temperature >= law.evaporation_onset ||
-                                                         gain >= c * (law.evaporation_onset - temperature));
-    if (!may_evaporate) {
-        // T' - T_amb = [c (T - T_amb) + gain] / (c + s a dt/m)
-        const double excess = a_dt * mass * (c * (temperature - law.ambient) + gain) / (mass * c + a_dt * s);
-        return {radiative * excess, law.convection * excess, 0.0};
+    const double c = eos.heat_capacity(temperature); // J/kg/K
+    const double r = a_dt / mass;
+    double evaporation = 0.0, evaporation_slope = 0.0; // W/m^2, W/m^2/K
+    bool stiff = false;
+    if (law.evaporation > 0.0) {
+        const double to_onset = law.evaporation_onset - temperature;
+        if (to_onset < 0.0) {
+            const double relative_slope =
+                (law.evaporation_temperature / temperature - 0.5) / temperature; // 1/K
+            evaporation = evaporative_flux(law, temperature);
+            evaporation_slope = evaporation * relative_slope;
+            stiff = r * evaporation_slope > weak_evaporation * c ||
+                    std::abs(gain) * relative_slope > weak_change * c;
+        } else {
+            stiff = gain > c * to_onset;
+        }
     }
-    const double t = evaporating_temperature(law, eos, eos.energy(temperature) + gain, a_dt / mass, s);
+    if (!stiff) {
+        // c (T' - T) = gain - r [s (T' - T_amb) + q_evaporation(T) + (T' - T) dq_evaporation/dT]
+        const double above_ambient = temperature - law.ambient;
+        const double change =
+            (gain - r * (s * above_ambient + evaporation)) / (c + r * (s + evaporation_slope));
+        const double excess = a_dt * (above_ambient + change);
+        return {radiative * excess, law.convection * excess,
+                a_dt * (evaporation + evaporation_slope * change)};
+    }
+    const double t = evaporating_temperature(law, eos, eos.energy(temperature) + gain, r, s);
     const double excess = a_dt * (t - law.ambient);
     return {radiative * excess, law.convection * excess, a_dt * evaporative_flux(law, t)};
 }

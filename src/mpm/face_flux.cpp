@@ -5,9 +5,8 @@ namespace {
 
 constexpr double weight_of_face = 0.75, weight_of_mirror = 0.25;
 
-/// Convection sees the face this many steps ahead. One would be Euler's implicit step for the face as a
-/// whole; but its outermost nodes and particles change more than the face does, and step 6 sharpens an
-/// increment up to twofold.
+/// Convection sees a node this many steps ahead. One is Euler's implicit step; but step 6 may double an
+/// increment.
 constexpr double look_ahead = 2.0;
 
 /// What the materials at a node take up together.
@@ -40,33 +39,35 @@ struct FaceColumn {
     double area; ///< m^2, of the face as far as it belongs to the box
 };
 
+/// J that a node takes in through its share of the face (area x time in m^2 s).
+double joule_into(const FaceCondition& condition, double share, const NodeMatter& at_node, double temperature,
+                  double increment) {
+    if (condition.kind == FaceCondition::Kind::fixed_flux)
+        return condition.flux * share;
+    const double conductance = condition.coefficient * share; // J/K
+    const double ahead = look_ahead / at_node.capacity;       // K/J
+    return conductance * (condition.temperature - temperature - ahead * increment) /
+           (1.0 + ahead * conductance);
+}
+
 /// J into the material through a column, and where it goes.
 double deposit_in_column(const Grid& grid, const FaceCondition& condition,
                          const std::vector<EquationOfState>& materials, double dt, const FaceColumn& column,
                          Nodes& nodes) {
-    const std::int64_t face = column.face, mirror = column.mirror;
-    const NodeMatter at_face = matter(materials, nodes, face);
+    const NodeMatter at_face = matter(materials, nodes, column.face);
     if (at_face.volume <= 0.0)
         return 0.0;
     const double full = column.area * 0.5 * grid.dx;
     const double area_dt = column.area * (at_face.volume / full) * dt;
-    double joule = condition.flux * area_dt;
-    if (condition.kind == FaceCondition::Kind::convection) {
-        const NodeMatter at_mirror = matter(materials, nodes, mirror); // what is at the face reaches it too
-        const double inverse_capacity = weight_of_face * weight_of_face / at_face.capacity +
-                                        weight_of_mirror * weight_of_mirror / at_mirror.capacity; // K/J
-        const double t =
-            weight_of_face * nodes.temperature[face] + weight_of_mirror * nodes.temperature[mirror];
-        const double rise =
-            weight_of_face * nodes.increment[face] / at_face.capacity +
-            weight_of_mirror * nodes.increment[mirror] / at_mirror.capacity; // K, without convection
-        const double conductance = condition.coefficient * area_dt;          // J/K
-        joule = conductance * (condition.temperature - t - look_ahead * rise) /
-                (1.0 + look_ahead * conductance * inverse_capacity);
-    }
-    nodes.increment[face] += weight_of_face * joule;
-    nodes.increment[mirror] += weight_of_mirror * joule;
-    return joule;
+    const auto deposit = [&](std::int64_t node, double weight, const NodeMatter& at_node) {
+        const double joule =
+            joule_into(condition, weight * area_dt, at_node, nodes.temperature[node], nodes.increment[node]);
+        nodes.increment[node] += joule;
+        return joule;
+    };
+    // What is at the face reaches the mirror node too, so that has mass.
+    return deposit(column.face, weight_of_face, at_face) +
+           deposit(column.mirror, weight_of_mirror, matter(materials, nodes, column.mirror));
 }
 
 double deposit_at_face(const Grid& grid, int f, const FaceCondition& condition,

@@ -15,9 +15,12 @@ namespace meltscope {
 /// the ghosts' part folded in). The face is lumped to its nodes: each stands for dx^2, halved at each edge of
 /// the box, times the share of its volume that is filled; so a body that covers part of the face gets the
 /// area that it covers, and one that ends within a cell of the face, which the grid cannot tell from
-/// touching, a part of it. Convection is implicit in the face's own temperature: q = h (T_amb - T'), with the
-/// end T' = T + [sum_i w_i D_i/m_i + q dA dt/m]/c, 1/m = sum_i w_i^2/m_i; it never goes beyond the ambient
-/// temperature.
+/// touching, a part of it.
+///
+/// Convection is lumped to the nodes, q N_i dA = h (T_amb - T_i') N_i dA, and implicit: T_i' = T_i + 2 (D_i +
+/// what convection adds)/C_i, C_i the node's heat capacity in J/K. So it leads no node beyond the ambient
+/// temperature, however large the step, and in a steady state, where D_i ends at zero, its flux does not
+/// depend on the step.
 std::array<double, 6> deposit_face_fluxes(const Grid& grid, const Boundary& boundary,
                                           const std::vector<EquationOfState>& materials, double dt,
                                           Nodes& nodes);

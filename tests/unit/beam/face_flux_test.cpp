@@ -126,6 +126,7 @@ TEST(FaceFlux, convection_of_any_strength_never_leads_beyond_ambient) {
         Boundary boundary;
         boundary[0] = boundary[3] = convection_of(h, 300.0);
         LatticeBody body = full_box({10, 8, 4}, 1200.0, boundary);
+        body.options.blend = 0.4;
         for (int n = 0; n < 60; ++n) {
             step(body, 0.4 * dx * dx / diffusivity);
             for (const double e : list_particles(body.particles).specific_energy)

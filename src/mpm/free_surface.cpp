@@ -31,7 +31,9 @@ Field gather_to_particles(const Grid& grid, const Particles& particles, const Fi
     return result;
 }
 
-/// A_i = dx^3 |grad phi_i| hat(phi_i), the box's share of the node's cell.
+/// A_i = dx^3 |grad phi_i| hat(phi_i), the box's share of the node's cell. The hat is (|n_x| + |n_y| + |n_z|)
+/// dx wide to either side, so that its sum over the nodes is that of a plane of any tilt: B. Engquist, A.-K.
+/// Tornberg, R. Tsai, J. Comput. Phys. 207 (2005) 28.
 Field node_areas(const Grid& grid, const Field& phi) {
     Field area(grid.size, 0.0);
     const double dx = grid.dx;
@@ -40,14 +42,18 @@ Field node_areas(const Grid& grid, const Field& phi) {
         for (std::int64_t j = 0; j <= grid.cells[1]; ++j)
             for (std::int64_t i = 0; i <= grid.cells[0]; ++i) {
                 const std::int64_t at = grid.index(i, j, k);
-                const double hat = std::max(0.0, 1.0 - std::abs(phi[at]) / dx) / dx;
-                if (hat == 0.0)
+                if (std::abs(phi[at]) >= std::sqrt(3.0) * dx)
                     continue;
                 const Vec3 gradient =
                     Vec3(phi[at + 1] - phi[at - 1], phi[at + grid.stride_y] - phi[at - grid.stride_y],
                          phi[at + grid.stride_z] - phi[at - grid.stride_z]) /
                     (2.0 * dx);
-                area[at] = dx * dx * dx * grid.share_in_box(i, j, k) * gradient.norm() * hat;
+                const double slope = gradient.norm();
+                if (slope == 0.0)
+                    continue;
+                const double width = dx * gradient.lpNorm<1>() / slope;
+                const double hat = std::max(0.0, 1.0 - std::abs(phi[at]) / width) / width;
+                area[at] = dx * dx * dx * grid.share_in_box(i, j, k) * slope * hat;
             }
     return area;
 }

@@ -13,6 +13,10 @@ namespace {
 /// no part of the surface is missed; less than the reach of the smoothed profile, so that it can be inverted.
 constexpr double seed_band = 0.9;
 
+/// Where the smoothed distance at a foot is further from zero than this, in cells, there is no surface:
+/// particles that stand unevenly make the fraction dip inside a body too.
+constexpr double foot_tolerance = 0.4;
+
 /// A particle this far outside the surface, in cells, has been smoothed away and gets a ball of its own.
 constexpr double smoothed_away = 0.25;
 
@@ -50,6 +54,23 @@ Field smoothed_distance(const Grid& grid, const Particles& particles) {
     return fraction;
 }
 
+/// Trilinear interpolation of a nodal field at a point, clamped to the box.
+double trilinear(const Grid& grid, const Field& f, const Vec3& point) {
+    std::array<std::int64_t, 3> cell;
+    Vec3 r;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double cells_in = (point[axis] - grid.origin[axis]) / grid.dx;
+        cell[axis] = std::clamp(std::int64_t(std::floor(cells_in)), std::int64_t(0), grid.cells[axis] - 1);
+        r[axis] = std::clamp(cells_in - double(cell[axis]), 0.0, 1.0);
+    }
+    const double* at = &f[grid.index(cell[0], cell[1], cell[2])];
+    const auto along_x = [&](std::int64_t shift) { return at[shift] + r[0] * (at[shift + 1] - at[shift]); };
+    const double low = along_x(0) + r[1] * (along_x(grid.stride_y) - along_x(0));
+    const double high =
+        along_x(grid.stride_z) + r[1] * (along_x(grid.stride_z + grid.stride_y) - along_x(grid.stride_z));
+    return low + r[2] * (high - low);
+}
+
 /// Foot points of all nodes next to the surface, and the node-wise index of a node's own foot (-1: none).
 std::vector<Foot> find_feet(const Grid& grid, const Field& distance, std::vector<std::int32_t>& nearest) {
     std::vector<std::vector<Foot>> feet_of_layer(grid.cells[2] + 1);
@@ -65,9 +86,11 @@ std::vector<Foot> find_feet(const Grid& grid, const Field& distance, std::vector
                 if (gradient.norm() * grid.dx < 0.1)
                     continue; // a gap or a sheet thinner than the grid can see
                 const Vec3 normal = gradient.normalized();
+                const Vec3 foot = grid.position(i, j, k) - distance[at] * grid.dx * normal;
+                if (std::abs(trilinear(grid, distance, foot)) > foot_tolerance)
+                    continue;
                 nearest[at] = std::int32_t(feet_of_layer[k].size());
-                feet_of_layer[k].push_back(
-                    {grid.position(i, j, k) - distance[at] * grid.dx * normal, normal});
+                feet_of_layer[k].push_back({foot, normal});
             }
     std::vector<Foot> feet;
     for (std::int64_t k = 0; k <= grid.cells[2]; ++k) {
@@ -92,6 +115,7 @@ class FootSweep {
         for (int round = 0; round < 2; ++round)
             for (int axis = 0; axis < 3; ++axis)
                 along(axis);
+        all_around();
     }
 
   private:
@@ -121,6 +145,20 @@ class FootSweep {
         }
     }
 
+    /// Every node looks at the feet of its 26 neighbours: what a row hands on along an axis can stop short of
+    /// a node whose own foot lies askew.
+    void all_around() {
+        const std::vector<std::int32_t> before = nearest_;
+        for_each_node(grid_, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
+            for (std::int64_t c = std::max<std::int64_t>(k - 1, 0); c <= std::min(k + 1, grid_.cells[2]); ++c)
+                for (std::int64_t b = std::max<std::int64_t>(j - 1, 0); b <= std::min(j + 1, grid_.cells[1]);
+                     ++b)
+                    for (std::int64_t a = std::max<std::int64_t>(i - 1, 0);
+                         a <= std::min(i + 1, grid_.cells[0]); ++a)
+                        offer({i, j, k}, at, before[grid_.index(a, b, c)]);
+        });
+    }
+
     void offer(const Index3& node, std::int64_t at, std::int32_t foot) {
         if (foot < 0 || foot == nearest_[at])
             return;
@@ -137,23 +175,6 @@ class FootSweep {
     std::vector<double> squared_; // m^2
 };
 
-/// Trilinear interpolation of a nodal field at a point, clamped to the box.
-double trilinear(const Grid& grid, const Field& f, const Vec3& point) {
-    std::array<std::int64_t, 3> cell;
-    Vec3 r;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double cells_in = (point[axis] - grid.origin[axis]) / grid.dx;
-        cell[axis] = std::clamp(std::int64_t(std::floor(cells_in)), std::int64_t(0), grid.cells[axis] - 1);
-        r[axis] = std::clamp(cells_in - double(cell[axis]), 0.0, 1.0);
-    }
-    const double* at = &f[grid.index(cell[0], cell[1], cell[2])];
-    const auto along_x = [&](std::int64_t shift) { return at[shift] + r[0] * (at[shift + 1] - at[shift]); };
-    const double low = along_x(0) + r[1] * (along_x(grid.stride_y) - along_x(0));
-    const double high =
-        along_x(grid.stride_z) + r[1] * (along_x(grid.stride_z + grid.stride_y) - along_x(grid.stride_z));
-    return low + r[2] * (high - low);
-}
-
 /// Distance in m from `point` to the surface near `foot`: to the tangent plane, corrected by what the
 /// smoothed fraction says at the point met there.
 double distance_near(const Grid& grid, const Field& smoothed, const Vec3& point, const Foot& foot) {
@@ -165,6 +186,31 @@ double distance_near(const Grid& grid, const Field& smoothed, const Vec3& point,
     const Vec3 on_plane = foot.point + aside;
     const double left = std::clamp(trilinear(grid, smoothed, on_plane), -seed_band, seed_band);
     return (point - (on_plane - left * grid.dx * foot.normal)).norm();
+}
+
+/// Smoothing draws the level one half of a curved surface towards its centre of curvature, by half the
+/// B-spline's variance (dx^2/4 along each axis) times div n = laplacian of phi: phi -= dx^2/8 laplacian(phi)
+/// puts it back. Second differences over two cells, so that the steps of a lattice do not pass for curvature.
+void undo_shift_by_curvature(const Grid& grid, Field& phi) {
+    Field shift(grid.size, 0.0);
+    const std::array<std::int64_t, 3> stride{1, grid.stride_y, grid.stride_z};
+    for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
+        if (std::abs(phi[at]) > 3.0 * grid.dx)
+            return;
+        const std::array<std::int64_t, 3> node{i, j, k};
+        double laplacian = 0.0; // times dx^2
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::int64_t last = grid.cells[axis];
+            const auto two_off = [&](std::int64_t step) { // mirrored at the box's faces
+                const std::int64_t n = std::abs(node[axis] + step);
+                return phi[at + ((n > last ? std::abs(2 * last - n) : n) - node[axis]) * stride[axis]];
+            };
+            laplacian += (two_off(2) - 2.0 * phi[at] + two_off(-2)) / 4.0;
+        }
+        shift[at] = std::clamp(laplacian, -grid.dx, grid.dx) / 8.0;
+    });
+    for_each_node(grid,
+                  [&](std::int64_t, std::int64_t, std::int64_t, std::int64_t at) { phi[at] -= shift[at]; });
 }
 
 /// Particles that stand outside the smoothed surface become balls, united with the rest.
@@ -222,6 +268,7 @@ Field signed_distance(const Grid& grid, const Particles& particles, const LevelS
                 std::min(distance, distance_near(grid, smoothed, grid.position(i, j, k), feet[nearest[at]]));
         phi[at] = sign * distance;
     });
+    undo_shift_by_curvature(grid, phi);
     unite_lone_particles(grid, particles, options, phi);
     mirror_ghosts(grid, Boundary{}, phi);
     return phi;

@@ -15,7 +15,7 @@ namespace meltscope {
 /// the ghosts' part folded in). The face is lumped to its nodes: each stands for dx^2, halved at each edge of
 /// the box, times the share of its volume that is filled; so a body that covers part of the face gets the
 /// area that it covers, and one that ends within a cell of the face, which the grid cannot tell from
-/// touching, a part of it.
+/// touching, a part of it. Homogenised powder counts by the solid in it.
 ///
 /// Convection is lumped to the nodes, q N_i dA = h (T_amb - T_i') N_i dA, and implicit: T_i' = T_i + 2 (D_i +
 /// what convection adds)/C_i, C_i the node's heat capacity in J/K. So it leads no node beyond the ambient

@@ -330,6 +330,9 @@ double reabsorbed_power(const RadiativeExchange& exchange, const SurfaceElements
     for (std::size_t i = 0; i < count; ++i)
         black[i] *= constants::stefan_boltzmann / exchange.area[i];
 
+    if (std::all_of(black.begin(), black.end(), [](double flux) { return flux == 0.0; }))
+        return 0.0;
+
     std::vector<double> radiosity = black; // beyond that at ambient, W/m^2
     const auto irradiation = [&](std::size_t i) {
         double sum = 0.0;
@@ -337,13 +340,26 @@ double reabsorbed_power(const RadiativeExchange& exchange, const SurfaceElements
             sum += exchange.exchange_area[n] * radiosity[exchange.column[n]];
         return sum / exchange.area[i];
     };
-    for (int sweep = 0; sweep < exchange.sweeps; ++sweep)
-        for (std::size_t i = 0; i < count; ++i)
-            if (exchange.emissivity[i] < 1.0)
-                radiosity[i] =
-                    exchange.emissivity[i] * black[i] + (1.0 - exchange.emissivity[i]) * irradiation(i);
-            else
-                radiosity[i] = black[i];
+    double largest = 0.0, least_emissivity = 1.0;
+    for (std::size_t i = 0; i < count; ++i) {
+        largest = std::max(largest, std::abs(black[i]));
+        least_emissivity = std::min(least_emissivity, exchange.emissivity[i]);
+    }
+    // A sweep contracts the error by 1 - eps, so that after a change d it is at most d (1 - eps)/eps.
+    const double small_change =
+        radiosity_error * largest * least_emissivity / std::max(1.0 - least_emissivity, 1e-12);
+    double change = 2.0 * small_change;
+    for (int sweep = 0; sweep < exchange.sweeps && change > small_change; ++sweep) {
+        change = 0.0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double emissivity = exchange.emissivity[i];
+            if (emissivity == 1.0)
+                continue;
+            const double next = emissivity * black[i] + (1.0 - emissivity) * irradiation(i);
+            change = std::max(change, std::abs(next - radiosity[i]));
+            radiosity[i] = next;
+        }
+    }
 
     std::vector<double> absorbed(count); // W/m^2
     for (std::size_t i = 0; i < count; ++i)

@@ -46,7 +46,7 @@ struct RadiativeExchange {
     std::vector<std::int32_t> column;    ///< patch j
     std::vector<double> exchange_area;   ///< G_ij, m^2
 
-    int sweeps = 0; ///< of the radiosity's Gauss-Seidel iteration, see reabsorbed_power
+    int sweeps = 0; ///< at most, of the radiosity's Gauss-Seidel iteration; see reabsorbed_power
     ExchangeCost cost;
 };
 
@@ -63,8 +63,8 @@ RadiativeExchange make_radiative_exchange(const Grid& grid, const FreeSurface& s
 /// where all is at ambient. `temperature`: K, of the elements. Returns the sum in W.
 ///
 /// Radiosity beyond that at ambient: u_i = eps_i sigma (T_i^4 - T_amb^4) + (1 - eps_i) sum_j G_ij u_j / A_i,
-/// by a fixed number of Gauss-Seidel sweeps from the black body's u, so many that the error is surely below
-/// 1e-3 of the largest u.
+/// by Gauss-Seidel sweeps in the patches' order from the black body's u, until the error is surely below 1e-3
+/// of the largest u.
 double reabsorbed_power(const RadiativeExchange& exchange, const SurfaceElements& elements,
                         std::span<const double> temperature, double ambient, std::span<double> power);
 

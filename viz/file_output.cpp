@@ -81,7 +81,8 @@ void convert(vtkDataSet* data) {
 void shrink_cells(vtkPolyData* data) {
     const auto shrunk = [](vtkCellArray* cells) {
         vtkNew<vtkCellArray> copy;
-        copy->ShallowCopy(cells);
+        // Deep: converting a shallow copy empties the cells it was made from (VTK 9.1).
+        copy->DeepCopy(cells);
         copy->ConvertToSmallestStorage();
         return vtkSmartPointer<vtkCellArray>(copy);
     };

@@ -1,5 +1,7 @@
+#include "scratch.hpp"
 #include "synthetic.hpp"
 #include "viz/data_sets.hpp"
+#include "viz/file_output.hpp"
 #include "viz/options.hpp"
 
 #include <cmath>
@@ -192,6 +194,22 @@ TEST(DataSets, geometry_is_made_once_while_the_level_set_is_the_same) {
     plate.phi = nullptr;
     const Instant third = make_instant(test::make_snapshot(plate, 2e-5), geometry);
     EXPECT_NE(first.geometry, third.geometry);
+}
+
+TEST(DataSets, writing_files_leaves_the_data_sets_as_they_were) {
+    const test::ScratchFolder scratch;
+    test::SyntheticPlate plate;
+    plate.count = {31, 21, 15};
+    std::shared_ptr<const Geometry> geometry;
+    const Instant instant = make_instant(test::make_snapshot(plate, 0.0), geometry);
+    const auto triangles = instant.free_surface->GetNumberOfPolys();
+    ASSERT_GT(triangles, 0);
+    FileOptions options;
+    options.run_dir = scratch.path();
+    FileOutput output(options);
+    output.write(instant);
+    EXPECT_EQ(instant.free_surface->GetNumberOfPolys(), triangles);
+    EXPECT_EQ(geometry->free_surface->GetNumberOfPolys(), triangles);
 }
 
 TEST(DataSets, incomplete_snapshots_are_refused) {

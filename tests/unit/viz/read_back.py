@@ -59,6 +59,7 @@ def check_run(run, dtype):
             if kind == "surface":
                 assert set(arrays) == {"temperature", "normals"}, set(arrays)
                 assert points.dtype == dtype
+                assert data.GetNumberOfPolys() == 2 * 100 * 30, "two triangles for each square of the plate"
                 assert np.abs(points[:, 2]).max() < 1e-9, "the plate's surface lies at z = 0"
                 assert np.allclose(arrays["normals"], [0, 0, 1], atol=1e-5)
                 assert 299.0 < temperature.min() and LIQUIDUS < temperature.max() < 4000.0
@@ -66,7 +67,7 @@ def check_run(run, dtype):
                 assert abs(points[temperature.argmax(), 0] - laser_x) < 150e-6, "hottest near the laser"
             elif kind == "pool":
                 marks = vtk_to_numpy(data.GetCellData().GetArray("free_surface"))
-                assert set(marks) == {0, 1}
+                assert set(marks) == {0, 1} and len(marks) == data.GetNumberOfPolys()
                 assert temperature.min() > LIQUIDUS - 1.0
                 depth = -points[:, 2].min()
                 assert 20e-6 < depth < 120e-6, depth

@@ -1,0 +1,34 @@
+#include "machine.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+namespace meltscope {
+
+double physical_memory() {
+    double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    std::ifstream limit_file("/sys/fs/cgroup/memory.max"); // holds "max" where there is no limit
+    double limit = 0.0;
+    if (limit_file >> limit && limit > 0.0)
+        bytes = std::min(bytes, limit);
+    return bytes;
+}
+
+double peak_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * double(usage.ru_maxrss);
+}
+
+void let_threads_sleep(char** arguments) {
+    if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT"))
+        return;
+    setenv("OMP_WAIT_POLICY", "passive", 1);
+    execv("/proc/self/exe", arguments); // comes back only if it fails; then threads spin
+}
+
+} // namespace meltscope

@@ -60,6 +60,7 @@ EquationOfState make_equation_of_state(const Material& m) {
     eos.latent_heat = m.latent_heat;
     eos.solid_conductivity = m.conductivity.solid;
     eos.liquid_conductivity = m.conductivity.liquid;
+    eos.powder_conductivity = m.conductivity.powder;
     eos.solid_heat_capacity = m.heat_capacity.solid;
     eos.liquid_heat_capacity = m.heat_capacity.liquid;
     for (double t = 0.0; t <= hottest_checked; t += 1.0) {
@@ -96,7 +97,10 @@ double max_diffusivity(const EquationOfState& eos, double coldest, double hottes
     const int samples = 16 + int((hottest - coldest) / 4.0);
     for (int i = 0; i <= samples; ++i) {
         const double t = coldest + (hottest - coldest) * i / samples;
-        most = std::max(most, eos.conductivity(t) / (eos.density * eos.heat_capacity(t)));
+        double kappa = eos.conductivity(t);
+        if (eos.powder_conductivity && t < eos.liquidus)
+            kappa = std::max(kappa, (*eos.powder_conductivity)(t));
+        most = std::max(most, kappa / (eos.density * eos.heat_capacity(t)));
     }
     return most;
 }

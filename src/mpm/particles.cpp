@@ -21,6 +21,11 @@ Particles make_particles(const Grid& grid, ParticleList list, int lattice) {
         particles.volume[at] = list.volume[q];
         particles.specific_energy[at] = list.specific_energy[q];
     }
+    if (!list.powder.empty()) {
+        particles.powder.assign(size, 0.0);
+        for (std::int64_t q = 0; q < list.size(); ++q)
+            particles.powder[particles.layout.place[q]] = list.powder[q] ? 1.0 : 0.0;
+    }
     particles.position = std::move(list.position);
     particles.id = std::move(list.id);
     particles.material = std::move(list.material);
@@ -42,6 +47,11 @@ ParticleList list_particles(const Particles& particles) {
         list.mass[q] = particles.mass[at];
         list.volume[q] = particles.volume[at];
         list.specific_energy[q] = particles.specific_energy[at];
+    }
+    if (!particles.powder.empty()) {
+        list.powder.resize(count);
+        for (std::int64_t q = 0; q < count; ++q)
+            list.powder[q] = particles.powder[particles.layout.place[q]] > 0.0;
     }
     return list;
 }

@@ -109,14 +109,30 @@ double undo_lumping(const Grid& grid, const Particles& particles,
     return change;
 }
 
+/// Homogenised powder conducts as powder until it has melted once: marks what reaches the liquidus as bulk
+/// and puts the powder's conductivity into `factor` = scale v_p kappa_p of the rest.
+template <std::size_t n>
+void conduct_as_powder(const EquationOfState& eos, const std::array<Lanes, n>& temperature,
+                       const double* volume, double scale, double* powder, std::array<Lanes, n>& factor) {
+    const Polynomial kappa = eos.powder_conductivity.value_or(Polynomial{});
+    for (std::size_t p = 0; p < n; ++p) {
+        const Lanes& t = temperature[p];
+        const Lanes left = select(t < eos.liquidus, load(powder + p * lane_count), Lanes(0.0));
+        store(left, powder + p * lane_count);
+        const Lanes of_powder = kappa.a[0] + t * (kappa.a[1] + t * kappa.a[2]);
+        factor[p] += scale * load(volume + p * lane_count) * left * (of_powder - eos.conductivity(t));
+    }
+}
+
 } // namespace
 
-void diffuse(const Grid& grid, const Particles& particles, const std::vector<EquationOfState>& materials,
+void diffuse(const Grid& grid, Particles& particles, const std::vector<EquationOfState>& materials,
              const StepOptions& options, double dt, Nodes& nodes) {
     const LatticeStencils lattices;
     const double* temperature = nodes.temperature.data();
     const double* energy =
         options.energy_gradient ? energy_of_temperature(materials[0], nodes).data() : nullptr;
+    const bool has_powder = !particles.powder.empty();
     const double scale = -dt / (grid.dx * grid.dx); // gradients come per cell, one of T and one of N
     for_each_block(particles.layout, [&](const LaneBlock& block) {
         for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
@@ -131,6 +147,9 @@ void diffuse(const Grid& grid, const Particles& particles, const std::vector<Equ
                 for (int p = 0; p < Stencil::points; ++p)
                     factor[p] = scale * load(&particles.volume[first + p * lane_count]) *
                                 eos.conductivity(flux.value[p]);
+                if (has_powder)
+                    conduct_as_powder(eos, flux.value, &particles.volume[first], scale,
+                                      &particles.powder[first], factor);
                 if (energy) {
                     for (int p = 0; p < Stencil::points; ++p)
                         factor[p] /= eos.heat_capacity(flux.value[p]);

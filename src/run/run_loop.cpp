@@ -20,13 +20,11 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The time beyond which this call does not go, s.
-double last_time(const Run& run) {
-    return std::min(run.simulation.parameters.time.end, run.until.value_or(never));
-}
-
 bool at_end(const Run& run) {
-    return run.simulation.time >= last_time(run) || (run.last_step && run.simulation.step >= *run.last_step);
+    const double time = run.simulation.time;
+    return time >= run.simulation.parameters.time.end ||
+           (run.until && (time >= *run.until || same_instant(time, *run.until))) ||
+           (run.last_step && run.simulation.step >= *run.last_step);
 }
 
 const Cadence& picture_cadence(const OutputSchedule& schedule) {
@@ -37,14 +35,15 @@ const Cadence& picture_cadence(const OutputSchedule& schedule) {
 double next_target(const Run& run, const std::vector<CommandSource>& commands) {
     const double time = run.simulation.time;
     // In order of precedence: of instants that are the same but for round-off the first is landed on.
-    std::vector<double> instants{last_time(run)};
+    std::vector<double> instants{run.simulation.parameters.time.end};
     for (const CommandSource& source : commands)
         if (source.next_time)
-            if (const double next = source.next_time(run); next > time)
+            if (const double next = source.next_time(run); next > time && !same_instant(next, time))
                 instants.push_back(next);
     instants.push_back(next_due(run.schedule.output, time));
     instants.push_back(next_due(picture_cadence(run.schedule), time));
     instants.push_back(next_due(run.schedule.checkpoint, time));
+    instants.push_back(run.until.value_or(never)); // last: to stop there and go on must leave no trace
     const double first = *std::min_element(instants.begin(), instants.end());
     return *std::find_if(instants.begin(), instants.end(),
                          [&](double t) { return t == first || same_instant(t, first); });
@@ -71,6 +70,8 @@ void advance_timed(Run& run, double target) {
     const Stopwatch watch;
     advance(simulation, target);
     const double level_set = simulation.seconds_in_level_set - level_set_before;
+    if (run.solidification)
+        record_solidification(simulation, *run.solidification);
     run.wall.solver += watch.seconds() - level_set;
     run.wall.level_set += level_set;
 }
@@ -116,18 +117,23 @@ Due due_at_end(const Run& run, RunOutcome outcome) {
 } // namespace
 
 RunOutcome run_to_end(Run& run, const RunConnections& connections) {
+    run.wall.level_set += run.simulation.seconds_in_level_set; // of setting the run up
     Due handed = due_now(run);
     handed.checkpoint =
         false; // the start can be had from the scenario, and a checkpoint taken up is there already
     hand_out(run, connections.sinks, handed);
+    run.hand_out_wanted = [&] {
+        const Due asked = without(run.wanted, handed);
+        run.wanted = {};
+        hand_out(run, connections.sinks, asked);
+        handed = both(handed, asked);
+    };
     for (;;) {
         for (const CommandSource& source : connections.commands)
             source.apply(run);
         if (run.stop_reason || at_end(run))
             break;
-        const Due asked = without(run.wanted, handed);
-        hand_out(run, connections.sinks, asked);
-        run.wanted = {};
+        run.hand_out_wanted();
 
         advance_timed(run, next_target(run, connections.commands));
         for (const auto& look : connections.after_step)
@@ -140,6 +146,7 @@ RunOutcome run_to_end(Run& run, const RunConnections& connections) {
                                                  : RunOutcome::interval;
     hand_out(run, connections.sinks, without(both(due_at_end(run, outcome), run.wanted), handed));
     run.wanted = {};
+    run.hand_out_wanted = {};
     return outcome;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace meltscope {
@@ -85,9 +86,9 @@ Cylinder read_cylinder(const Section& section, const DomainSpec& domain) {
     return cylinder;
 }
 
-PowderSpec read_powder(const Section& section, const DomainSpec& domain) {
-    PowderSpec powder;
-    powder.box = read_box(section, domain);
+/// The keys of balls, into a PowderSpec or a PowderLayer.
+template <class Powder>
+void read_balls(const Section& section, Powder& powder) {
     powder.d10 = section.above("d10", quantity::length, 0.0);
     powder.d50 = section.in_range("d50", quantity::length, powder.d10, no_limit);
     powder.d90 = section.in_range("d90", quantity::length, powder.d50, no_limit);
@@ -95,7 +96,39 @@ PowderSpec read_powder(const Section& section, const DomainSpec& domain) {
     powder.packing = section.above("packing", quantity::number, 0.0, 0.74, powder.packing);
     powder.seed =
         static_cast<std::uint64_t>(section.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
+}
+
+PowderSpec read_powder(const Section& section, const DomainSpec& domain) {
+    PowderSpec powder;
+    powder.box = read_box(section, domain);
+    read_balls(section, powder);
     return powder;
+}
+
+const Material& read_material_name(const Section& section, const std::vector<Material>& materials) {
+    std::vector<std::string> names;
+    for (const Material& material : materials) {
+        names.push_back(material.name);
+    }
+    const std::string name = section.word("material", names);
+    return *std::find_if(materials.begin(), materials.end(),
+                         [&](const Material& material) { return material.name == name; });
+}
+
+/// The packing of homogenised powder; none for state = "bulk" or without a state.
+std::optional<double> read_homogenised(const Section& section, const Material& material) {
+    if (!section.has("state") || section.word("state", {"bulk", "powder"}) == "bulk") {
+        return std::nullopt;
+    }
+    if (!material.conductivity.powder) {
+        section.fail("state",
+                     fmt::format("\"powder\" needs conductivity.powder of material \"{}\"", material.name));
+    }
+    const double packing = section.above("packing", quantity::number, 0.0, 1.0, 0.5);
+    if (packing == 1.0) {
+        section.fail("packing", "must be below 1: state = \"bulk\" is what has no pores");
+    }
+    return packing;
 }
 
 const std::vector<std::pair<std::string, std::vector<std::string>>>& shape_keys() {
@@ -128,15 +161,17 @@ ShapeSpec read_shape(const Section& section, const std::string& shape, const Dom
     return StlSpec{section.file("file"), section.above("scale", quantity::length, 0.0, no_limit, 1.0)};
 }
 
-BodySpec read_body(const Section& section, const DomainSpec& domain,
-                   const std::vector<std::string>& materials, double ambient) {
+BodySpec read_body(const Section& section, const DomainSpec& domain, const std::vector<Material>& materials,
+                   double ambient) {
     const std::vector<std::string> common{"shape", "material", "temperature"};
+    const std::vector<std::string> of_solids{"state", "packing"};
     std::vector<std::string> shapes;
     std::vector<std::string> of_any_shape = common;
     for (const auto& [shape, keys] : shape_keys()) {
         shapes.push_back(shape);
         of_any_shape.insert(of_any_shape.end(), keys.begin(), keys.end());
     }
+    of_any_shape.insert(of_any_shape.end(), of_solids.begin(), of_solids.end());
     if (!section.has("shape")) {
         section.allow_only(of_any_shape); // a misspelt "shape" is told as such
     }
@@ -145,14 +180,64 @@ BodySpec read_body(const Section& section, const DomainSpec& domain,
         if (shape == chosen) {
             std::vector<std::string> allowed = common;
             allowed.insert(allowed.end(), keys.begin(), keys.end());
+            if (shape != "powder") {
+                allowed.insert(allowed.end(), of_solids.begin(), of_solids.end());
+            } else if (section.has("state")) {
+                section.fail("state",
+                             "belongs to the other shapes: shape = \"powder\" is resolved, ball by ball");
+            }
             section.allow_only(allowed);
         }
     }
     BodySpec body;
     body.shape = read_shape(section, chosen, domain);
-    body.material = section.word("material", materials);
+    const Material& material = read_material_name(section, materials);
+    body.material = material.name;
     body.temperature = section.above("temperature", quantity::temperature, 0.0, highest_temperature, ambient);
+    if (chosen != "powder") {
+        body.powder_packing = read_homogenised(section, material);
+        if (!body.powder_packing && section.has("packing")) {
+            section.fail("packing", "belongs to state = \"powder\" or shape = \"powder\"");
+        }
+        if (body.powder_packing && body.temperature >= material.liquidus) {
+            section.fail("temperature",
+                         fmt::format("powder must start below the liquidus, {:g} K", material.liquidus));
+        }
+    }
     return body;
+}
+
+ScheduledLayer read_layer(const Section& section, const std::vector<Material>& materials, double ambient,
+                          double end, std::optional<double> default_time) {
+    std::vector<std::string> allowed{"time", "thickness", "material", "temperature", "state", "packing"};
+    const bool homogenised = section.has("state");
+    const std::vector<std::string> of_balls{"d10", "d50", "d90", "percentiles", "seed"};
+    if (!homogenised) {
+        allowed.insert(allowed.end(), of_balls.begin(), of_balls.end());
+    }
+    section.allow_only(allowed);
+    ScheduledLayer scheduled;
+    if (!section.has("time") && !default_time) {
+        section.fail("time", "missing: there is no laser path at whose end the layer could come");
+    }
+    scheduled.time = section.in_range("time", quantity::time, 0.0, no_limit, default_time);
+    if (!(scheduled.time < end)) {
+        section.fail("time", fmt::format("must be before time.end = {:g} s, is {:g} s{}", end, scheduled.time,
+                                         section.has("time") ? "" : ", the end of the laser paths"));
+    }
+    PowderLayer& layer = scheduled.layer;
+    layer.thickness = section.above("thickness", quantity::length, 0.0);
+    const Material& material = read_material_name(section, materials);
+    layer.material = static_cast<std::int16_t>(&material - materials.data());
+    layer.temperature = section.above("temperature", quantity::temperature, 0.0, material.liquidus, ambient);
+    if (homogenised) {
+        section.word("state", {"powder"});
+        layer.homogenised = true;
+        layer.packing = *read_homogenised(section, material);
+    } else {
+        read_balls(section, layer);
+    }
+    return scheduled;
 }
 
 FaceSpec read_face(const Section& boundary, const std::string& name, double ambient) {
@@ -206,7 +291,7 @@ DomainSpec read_domain(const Section& section) {
 }
 
 std::vector<BodySpec> read_bodies(const Section& root, const DomainSpec& domain,
-                                  const std::vector<std::string>& materials, double ambient) {
+                                  const std::vector<Material>& materials, double ambient) {
     std::vector<BodySpec> bodies;
     for (const Section& section : root.sections("body")) {
         bodies.push_back(read_body(section, domain, materials, ambient));
@@ -215,6 +300,19 @@ std::vector<BodySpec> read_bodies(const Section& root, const DomainSpec& domain,
         root.fail("body", "missing: at least one [[body]] is needed");
     }
     return bodies;
+}
+
+std::vector<ScheduledLayer> read_layers(const Section& root, const std::vector<Material>& materials,
+                                        const std::vector<Laser>& lasers, double ambient, double end) {
+    std::optional<double> paths_end;
+    for (const Laser& laser : lasers) {
+        paths_end = std::max(paths_end.value_or(0.0), path_end_time(laser.path));
+    }
+    std::vector<ScheduledLayer> layers;
+    for (const Section& section : root.sections("layer")) {
+        layers.push_back(read_layer(section, materials, ambient, end, paths_end));
+    }
+    return layers;
 }
 
 std::array<FaceSpec, 6> read_boundary(const Section& root, double ambient) {

@@ -18,6 +18,18 @@ std::size_t material_index(const Scenario& scenario, const std::string& name) {
     throw std::out_of_range("the scenario has no material called " + name);
 }
 
+std::vector<std::string> scenario_notes(const Scenario& scenario) {
+    std::vector<std::string> notes;
+    for (const Material& material : scenario.materials) {
+        if (material.heat_capacity.powder) {
+            notes.push_back("material \"" + material.name +
+                            "\": heat_capacity.powder is not used; a kilogram of powder holds as much heat as a "
+                            "kilogram of the bulk, so that melting keeps the energy");
+        }
+    }
+    return notes;
+}
+
 const std::vector<std::string>& view_names() {
     static const std::vector<std::string> names{"overview", "section", "top", "pool", "dashboard"};
     return names;

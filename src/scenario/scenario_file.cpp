@@ -15,9 +15,9 @@ namespace {
 constexpr double most_outputs = 999999.0; // names of files carry six digits
 
 PhysicsSpec read_physics(const Section& root) {
-    const Section section = root.section("physics", {"diffusion", "transfer", "deposit", "blend_time",
-                                                     "radiation", "evaporation", "reabsorption", "convection",
-                                                     "ambient"});
+    const Section section =
+        root.section("physics", {"diffusion", "transfer", "deposit", "blend_time", "radiation", "evaporation",
+                                 "reabsorption", "convection", "ambient"});
     PhysicsSpec physics;
     physics.diffusion = section.choice("diffusion", words::diffusion, physics.diffusion);
     physics.transfer = section.choice("transfer", words::transfer, physics.transfer);
@@ -32,8 +32,8 @@ PhysicsSpec read_physics(const Section& root) {
     if (physics.reabsorption && !physics.radiation) {
         section.fail("reabsorption", "needs radiation = true: it is radiation that is absorbed again");
     }
-    physics.convection =
-        section.in_range("convection", quantity::heat_transfer_coefficient, 0.0, no_limit, physics.convection);
+    physics.convection = section.in_range("convection", quantity::heat_transfer_coefficient, 0.0, no_limit,
+                                          physics.convection);
     physics.ambient =
         section.above("ambient", quantity::temperature, 0.0, highest_temperature, physics.ambient);
     return physics;
@@ -71,8 +71,9 @@ std::optional<double> read_interval(const Section& section, const TimeSpec& time
 }
 
 OutputSpec read_output(const Section& root, const TimeSpec& time, const Material& first_material) {
-    const Section section = root.section("output", {"every", "every_steps", "particles", "surface", "pool",
-                                                    "grid", "compression", "precision", "isotherms"});
+    const Section section =
+        root.section("output", {"every", "every_steps", "particles", "surface", "pool", "grid", "compression",
+                                "precision", "solidification", "isotherms"});
     OutputSpec output;
     if (section.has("every") && section.has("every_steps")) {
         section.fail("every_steps", "every is given as well; only one of the two can hold");
@@ -87,6 +88,7 @@ OutputSpec read_output(const Section& root, const TimeSpec& time, const Material
     output.surface = section.flag("surface", output.surface);
     output.pool = section.flag("pool", output.pool);
     output.grid = section.flag("grid", output.grid);
+    output.solidification = section.flag("solidification", output.solidification);
     output.compression = section.choice("compression", words::compression, output.compression);
     output.precision = section.choice("precision", words::precision, output.precision);
     output.isotherms = {first_material.liquidus};
@@ -231,22 +233,20 @@ std::vector<Material> read_materials(const Section& root, const std::vector<std:
 
 Scenario read_tree(const Section& root, const std::vector<std::string>& material_files) {
     root.allow_only({"title", "domain", "body", "materials", "material", "boundary", "laser", "physics",
-                     "level_set", "time", "output", "render", "checkpoint"});
+                     "level_set", "time", "output", "render", "checkpoint", "layer"});
     Scenario scenario;
     scenario.title = root.has("title") ? root.text("title") : "";
     root.require("domain");
     scenario.domain = read_domain(root.section("domain", {"min", "max", "cell_size", "particles_per_cell"}));
     scenario.physics = read_physics(root);
     scenario.materials = read_materials(root, material_files, scenario.physics);
-    std::vector<std::string> names;
-    for (const Material& material : scenario.materials) {
-        names.push_back(material.name);
-    }
-    scenario.bodies = read_bodies(root, scenario.domain, names, scenario.physics.ambient);
+    scenario.bodies = read_bodies(root, scenario.domain, scenario.materials, scenario.physics.ambient);
     scenario.boundary = read_boundary(root, scenario.physics.ambient);
     scenario.lasers = read_lasers(root, scenario.domain);
     scenario.level_set = read_level_set(root);
     scenario.time = read_time(root);
+    scenario.layers =
+        read_layers(root, scenario.materials, scenario.lasers, scenario.physics.ambient, scenario.time.end);
     scenario.output = read_output(root, scenario.time, scenario.materials.front());
     scenario.render = read_render(root, scenario.time);
     scenario.checkpoint = read_checkpoint(root, scenario.time);

@@ -34,9 +34,12 @@ void apply_override(toml::table& tree, Override change);
 Material read_material_section(const Section& section, const std::string& name);
 
 DomainSpec read_domain(const Section& section);
-/// `materials` names what a body may be made of.
+/// `materials` are what a body may be made of.
 std::vector<BodySpec> read_bodies(const Section& root, const DomainSpec& domain,
-                                  const std::vector<std::string>& materials, double ambient);
+                                  const std::vector<Material>& materials, double ambient);
+/// `end` is time.end, s; a layer without a time comes when the last laser path ends.
+std::vector<ScheduledLayer> read_layers(const Section& root, const std::vector<Material>& materials,
+                                        const std::vector<Laser>& lasers, double ambient, double end);
 std::array<FaceSpec, 6> read_boundary(const Section& root, double ambient);
 std::vector<Laser> read_lasers(const Section& root, const DomainSpec& domain);
 

@@ -137,6 +137,8 @@ ParticleList fill_scenario(const Scenario& scenario) {
 
     const LatticeFill filling(shapes, lattice);
     const double volume = spacing * spacing * spacing;
+    const bool has_powder = std::any_of(scenario.bodies.begin(), scenario.bodies.end(),
+                                        [](const BodySpec& body) { return body.powder_packing.has_value(); });
     ParticleList list;
     std::vector<std::int16_t> sites(lattice.count[0] * lattice.count[1]);
     for (std::int64_t k = 0; k < lattice.count[2]; ++k) {
@@ -148,7 +150,11 @@ ParticleList fill_scenario(const Scenario& scenario) {
                     continue;
                 list.position.push_back(lattice.origin + spacing * Vec3(double(i), double(j), double(k)));
                 list.volume.push_back(volume);
-                list.mass.push_back(volume * scenario.materials[material[body]].density);
+                const std::optional<double>& packing = scenario.bodies[body].powder_packing;
+                list.mass.push_back(volume * scenario.materials[material[body]].density *
+                                    packing.value_or(1.0));
+                if (has_powder)
+                    list.powder.push_back(packing.has_value());
                 list.specific_energy.push_back(energy[body]);
                 list.id.push_back(list.size() - 1);
                 list.material.push_back(std::int16_t(material[body]));
@@ -180,6 +186,8 @@ Estimate estimate(const Scenario& scenario) {
         volume += size.prod();
     }
     const Vec3 domain = scenario.domain.max - scenario.domain.min;
+    for (const ScheduledLayer& scheduled : scenario.layers)
+        volume += domain[0] * domain[1] * scheduled.layer.thickness;
     e.particles_at_most = std::int64_t(std::min(volume, domain.prod()) / site * (1.0 + 1e-9));
     // Measured: arrays of the step, the list they are made from, nodal fields and their temporaries.
     e.bytes = 190.0 * double(e.particles_at_most) + 200.0 * double(grid.size);

@@ -176,6 +176,25 @@ void write_laser(Writer& writer, const Laser& laser) {
     writer.raw("path", path + "]");
 }
 
+void write_layer(Writer& writer, const ScheduledLayer& scheduled, const std::string& material) {
+    const PowderLayer& layer = scheduled.layer;
+    writer.header("[[layer]]");
+    writer.put("time", scheduled.time);
+    writer.put("thickness", layer.thickness);
+    writer.put("material", material);
+    writer.put("temperature", layer.temperature);
+    if (layer.homogenised) {
+        writer.put("state", "powder");
+    } else {
+        writer.put("d10", layer.d10);
+        writer.put("d50", layer.d50);
+        writer.put("d90", layer.d90);
+        writer.put("percentiles", words::of(words::percentiles, layer.basis));
+        writer.put("seed", layer.seed);
+    }
+    writer.put("packing", layer.packing);
+}
+
 void write_domain(Writer& writer, const DomainSpec& domain) {
     writer.header("[domain]");
     writer.put("min", domain.min);
@@ -205,6 +224,7 @@ void write_output(Writer& writer, const OutputSpec& output) {
     writer.put("surface", output.surface);
     writer.put("pool", output.pool);
     writer.put("grid", output.grid);
+    writer.put("solidification", output.solidification);
     writer.put("compression", words::of(words::compression, output.compression));
     writer.put("precision", words::of(words::precision, output.precision));
     writer.raw("isotherms", list(output.isotherms));
@@ -241,6 +261,10 @@ std::string to_toml(const Scenario& scenario) {
         std::visit(ShapeWriter{writer}, body.shape);
         writer.put("material", body.material);
         writer.put("temperature", body.temperature);
+        if (body.powder_packing) {
+            writer.put("state", "powder");
+            writer.put("packing", *body.powder_packing);
+        }
     }
     writer.header("[boundary]");
     for (std::size_t i = 0; i < scenario.boundary.size(); ++i) {
@@ -248,6 +272,9 @@ std::string to_toml(const Scenario& scenario) {
     }
     for (const Laser& laser : scenario.lasers) {
         write_laser(writer, laser);
+    }
+    for (const ScheduledLayer& scheduled : scenario.layers) {
+        write_layer(writer, scheduled, scenario.materials[scheduled.layer.material].name);
     }
     write_physics(writer, scenario.physics);
     writer.header("[level_set]");

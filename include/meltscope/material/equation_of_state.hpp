@@ -4,6 +4,7 @@
 #include "meltscope/material/material.hpp"
 
 #include <array>
+#include <optional>
 
 namespace meltscope {
 
@@ -29,6 +30,7 @@ struct EquationOfState {
     std::array<Range, 3> range;                           ///< solid, mushy, liquid
     int newton_steps = 0;                                 ///< enough for 1e-9 K over 0 .. 6000 K
     Polynomial solid_conductivity, liquid_conductivity;   ///< W/m/K
+    std::optional<Polynomial> powder_conductivity;        ///< W/m/K, of homogenised powder
     Polynomial solid_heat_capacity, liquid_heat_capacity; ///< J/kg/K
 
     /// Share of liquid, 0 to 1. T in K.
@@ -107,7 +109,8 @@ struct EquationOfState {
 /// Throws std::invalid_argument if solidus >= liquidus or a heat capacity is not positive over 0 .. 6000 K.
 EquationOfState make_equation_of_state(const Material& material);
 
-/// Largest kappa/(rho c) in m^2/s over [coldest, hottest] in K, outside and inside the mushy range.
+/// Largest kappa/(rho c) in m^2/s over [coldest, hottest] in K, outside and inside the mushy range, of the bulk and, if
+/// the material has one, the powder's kappa with the bulk's rho.
 double max_diffusivity(const EquationOfState& eos, double coldest, double hottest);
 
 } // namespace meltscope

@@ -25,14 +25,14 @@ struct PhaseProperty {
 /// liquidus].
 struct Material {
     std::string name;
-    double density = 0.0;                              ///< kg/m^3
-    double solidus = 0.0;                              ///< K
-    double liquidus = 0.0;                             ///< K
-    double latent_heat = 0.0;                          ///< J/kg, of fusion
-    PhaseProperty conductivity;                        ///< W/m/K
-    PhaseProperty heat_capacity;                       ///< J/kg/K
-    std::optional<double> emissivity;                  ///< 1
-    std::optional<double> boiling_point;               ///< K
+    double density = 0.0;                ///< kg/m^3
+    double solidus = 0.0;                ///< K
+    double liquidus = 0.0;               ///< K
+    double latent_heat = 0.0;            ///< J/kg, of fusion
+    PhaseProperty conductivity;          ///< W/m/K
+    PhaseProperty heat_capacity;         ///< J/kg/K; that of the powder is not used: see scenario_notes
+    std::optional<double> emissivity;    ///< 1
+    std::optional<double> boiling_point; ///< K
     std::optional<double> latent_heat_of_vaporization; ///< J/kg
     std::optional<double> molar_mass;                  ///< kg/mol
     std::string source;                                ///< where the figures come from

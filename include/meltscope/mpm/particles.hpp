@@ -16,6 +16,7 @@ struct ParticleList {
     std::vector<double> specific_energy; ///< e_p, J/kg
     std::vector<std::int64_t> id;        ///< ascending
     std::vector<std::int16_t> material;  ///< index into the run's materials
+    std::vector<char> powder; ///< 1: homogenised powder that has not melted yet; empty: there is none
 
     std::int64_t size() const { return std::int64_t(position.size()); }
 };
@@ -34,6 +35,9 @@ struct Particles {
     Field mass;                         ///< m_p, kg
     Field volume;                       ///< v_p, m^3
     Field specific_energy;              ///< e_p, J/kg
+    /// 1: homogenised powder that has not melted yet, 0: bulk; empty: there never was powder. Such a particle
+    /// stands for its whole volume; its mass is that of the powder in it.
+    Field powder;
 
     std::int64_t count() const { return std::int64_t(id.size()); }
 };

@@ -15,7 +15,8 @@ struct StepOptions {
 
 /// Step 5, diffusion: D_i += dt sum_p v_p F_p . grad N_ip, F_p = -kappa(T_p) sum_i T_i grad N_ip.
 /// With `energy_gradient`, F_p = -(kappa/c) sum_i e(T_i) grad N_ip (one material only).
-void diffuse(const Grid& grid, const Particles& particles, const std::vector<EquationOfState>& materials,
+/// Homogenised powder has the powder's kappa; what reaches the liquidus becomes bulk for good.
+void diffuse(const Grid& grid, Particles& particles, const std::vector<EquationOfState>& materials,
              const StepOptions& options, double dt, Nodes& nodes);
 
 /// Step 6: e_i* = e_i + D_i / m_i, then the faces of fixed temperature; ghosts follow. With the affine

@@ -3,6 +3,7 @@
 #include "meltscope/run/cadence.hpp"
 #include "meltscope/run/measure.hpp"
 #include "meltscope/run/simulation.hpp"
+#include "meltscope/run/solidification.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -43,12 +44,16 @@ struct WallSeconds {
 struct Run {
     Simulation simulation;
     OutputSchedule schedule;
-    std::string journal; ///< what changed the run so far; goes into checkpoints
+    std::string journal;                          ///< what changed the run so far; goes into checkpoints
+    std::int64_t layers_laid = 0;                 ///< of the scenario's powder layers; see scheduled_layers
+    std::optional<Solidification> solidification; ///< recorded after every step; unset: not wanted
 
     std::optional<double> until;            ///< s: pause for good at this time, if it comes before the end
     std::optional<std::int64_t> last_step;  ///< the same, at this step
     std::optional<std::string> stop_reason; ///< set by whoever wants the run to stop now, with a checkpoint
     Due wanted;                             ///< set by whoever wants an output beside the schedule, now
+    /// Set by the loop: hands out what is wanted at once, for a source of commands that waits.
+    std::function<void()> hand_out_wanted;
 
     WallSeconds wall;
 };

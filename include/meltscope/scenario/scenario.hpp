@@ -4,6 +4,7 @@
 #include "meltscope/build/powder.hpp"
 #include "meltscope/build/shapes.hpp"
 #include "meltscope/material/material.hpp"
+#include "meltscope/run/powder_layer.hpp"
 #include "meltscope/vec3.hpp"
 
 #include <array>
@@ -48,6 +49,8 @@ struct BodySpec {
     ShapeSpec shape;
     std::string material;        ///< name of one of the scenario's materials
     double temperature = 298.15; ///< K at the start; by default physics.ambient
+    /// state = "powder": homogenised powder of this packing (share of its volume that is solid); unset: bulk
+    std::optional<double> powder_packing;
 };
 
 /// What holds on one face of the domain.
@@ -97,6 +100,7 @@ struct OutputSpec {
     bool surface = true;
     bool pool = true;
     bool grid = false;
+    bool solidification = false; ///< solidification data of every node that freezes
     Compression compression = Compression::none;
     Precision precision = Precision::float32;
     std::vector<double>
@@ -128,9 +132,10 @@ struct Scenario {
     std::string title;
     DomainSpec domain;
     std::vector<BodySpec> bodies;
-    std::vector<Material> materials;  ///< in the order of the file: `materials` first, then [material.NAME]
-    std::array<FaceSpec, 6> boundary; ///< in the order of face_names
-    std::vector<Laser> lasers;        ///< paths resolved, from wherever they came
+    std::vector<Material> materials;    ///< in the order of the file: `materials` first, then [material.NAME]
+    std::array<FaceSpec, 6> boundary;   ///< in the order of face_names
+    std::vector<Laser> lasers;          ///< paths resolved, from wherever they came
+    std::vector<ScheduledLayer> layers; ///< of powder, laid during the run
     PhysicsSpec physics;
     LevelSetSpec level_set;
     TimeSpec time;
@@ -141,6 +146,9 @@ struct Scenario {
 
 /// Index in scenario.materials of the material called `name`; throws std::out_of_range if there is none.
 std::size_t material_index(const Scenario& scenario, const std::string& name);
+
+/// What of a scenario is allowed and has no effect, one sentence each; for the log.
+std::vector<std::string> scenario_notes(const Scenario& scenario);
 
 /// Views and colour maps a scenario may name.
 const std::vector<std::string>& view_names();

@@ -1,0 +1,148 @@
+#include "meltscope/run/solidification.hpp"
+
+#include "meltscope/run/simulation.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace meltscope {
+namespace {
+
+constexpr double not_molten = -1.0;
+
+/// Nodes up to so far outside, in cells, are in the material: those on a plane surface, whatever the
+/// rounding.
+constexpr double on_the_surface = 0.01;
+
+double lowest_liquidus(const std::vector<EquationOfState>& materials) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const EquationOfState& eos : materials)
+        lowest = std::min(lowest, eos.liquidus);
+    return lowest;
+}
+
+double liquidus_at(const Simulation& s, std::int64_t node) {
+    std::size_t most = 0;
+    for (std::size_t a = 1; a < s.nodes.material_mass.size(); ++a)
+        if (s.nodes.material_mass[a][node] > s.nodes.material_mass[most][node])
+            most = a;
+    return s.eos[most].liquidus;
+}
+
+bool in_material(const Simulation& s, std::int64_t node) {
+    return s.nodes.mass[node] > 0.0 && s.surface.phi[node] <= on_the_surface * s.grid.dx;
+}
+
+/// Central differences, one-sided where a neighbour has no temperature.
+Vec3 gradient_at(const Simulation& s, const Field& temperature, const Index3& node) {
+    const Grid& grid = s.grid;
+    const std::int64_t at = grid.index(node[0], node[1], node[2]);
+    const std::array<std::int64_t, 3> stride{1, grid.stride_y, grid.stride_z};
+    Vec3 gradient = Vec3::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+        std::int64_t below = at, above = at;
+        if (node[axis] > 0 && s.nodes.mass[at - stride[axis]] > 0.0)
+            below = at - stride[axis];
+        if (node[axis] < grid.cells[axis] && s.nodes.mass[at + stride[axis]] > 0.0)
+            above = at + stride[axis];
+        const std::int64_t cells = (above - below) / stride[axis];
+        if (cells > 0)
+            gradient[axis] = (temperature[above] - temperature[below]) / (double(cells) * grid.dx);
+    }
+    return gradient;
+}
+
+SolidifiedPoint solidified(const Simulation& s, const Solidification& record, const Index3& node,
+                           double liquidus) {
+    const std::int64_t at = s.grid.index(node[0], node[1], node[2]);
+    const double before = record.previous[at], after = s.nodes.temperature[at];
+    const double dt = s.time - record.previous_time;
+    // What was molten by a change of the particles alone may have been below the liquidus already.
+    const double share = before > liquidus ? (before - liquidus) / (before - after) : 0.0;
+    SolidifiedPoint point;
+    point.position = s.grid.position(node[0], node[1], node[2]);
+    point.melted = record.melted_at[at];
+    point.solidified = record.previous_time + share * dt;
+    point.cooling_rate = (before - after) / dt;
+    point.gradient = ((1.0 - share) * gradient_at(s, record.previous, node) +
+                      share * gradient_at(s, s.nodes.temperature, node))
+                         .norm();
+    point.speed = point.cooling_rate / point.gradient;
+    return point;
+}
+
+/// Looks at one row of nodes; what solidified goes to `points`. Returns by how much more nodes are molten.
+std::int64_t look_at_row(const Simulation& s, Solidification& record, std::int64_t j, std::int64_t k,
+                         std::vector<SolidifiedPoint>& points) {
+    const bool one_material = !s.nodes.several_materials();
+    std::int64_t more = 0;
+    for (std::int64_t i = 0; i <= s.grid.cells[0]; ++i) {
+        const std::int64_t at = s.grid.index(i, j, k);
+        const double liquidus = one_material ? s.eos[0].liquidus : liquidus_at(s, at);
+        const bool was_molten = record.melted_at[at] >= 0.0;
+        const bool is_hot = s.nodes.temperature[at] >= liquidus;
+        if (is_hot == was_molten)
+            continue;
+        if (was_molten) {
+            points.push_back(solidified(s, record, {i, j, k}, liquidus));
+            record.melted_at[at] = not_molten;
+            --more;
+        } else if (in_material(s, at)) {
+            const double before = record.previous[at];
+            const double share =
+                before < liquidus ? (liquidus - before) / (s.nodes.temperature[at] - before) : 0.0;
+            record.melted_at[at] = record.previous_time + share * (s.time - record.previous_time);
+            ++more;
+        }
+    }
+    return more;
+}
+
+} // namespace
+
+Solidification begin_solidification(const Simulation& s) {
+    Solidification record;
+    record.melted_at.assign(s.grid.size, not_molten);
+    record.previous = s.nodes.temperature;
+    record.previous_time = s.time;
+    std::vector<SolidifiedPoint> none;
+    for (std::int64_t k = 0; k <= s.grid.cells[2]; ++k)
+        for (std::int64_t j = 0; j <= s.grid.cells[1]; ++j)
+            record.molten += look_at_row(s, record, j, k, none);
+    return record;
+}
+
+Solidification resume_solidification(const Simulation& s, Field melted_at,
+                                     std::vector<SolidifiedPoint> points) {
+    if (std::int64_t(melted_at.size()) != s.grid.size)
+        throw std::invalid_argument("the saved times of melting do not fit the grid");
+    Solidification record;
+    record.points = std::move(points);
+    record.melted_at = std::move(melted_at);
+    record.molten = std::count_if(record.melted_at.begin(), record.melted_at.end(),
+                                  [](double melted) { return melted >= 0.0; });
+    record.previous = s.nodes.temperature;
+    record.previous_time = s.time;
+    return record;
+}
+
+void record_solidification(const Simulation& s, Solidification& record) {
+    if (record.molten > 0 || s.peak_temperature >= lowest_liquidus(s.eos)) {
+        // A list a plane, then the planes in order: the same for any number of threads.
+        std::vector<std::vector<SolidifiedPoint>> points(s.grid.cells[2] + 1);
+        std::int64_t more = 0;
+#pragma omp parallel for schedule(static) reduction(+ : more)
+        for (std::int64_t k = 0; k <= s.grid.cells[2]; ++k)
+            for (std::int64_t j = 0; j <= s.grid.cells[1]; ++j)
+                more += look_at_row(s, record, j, k, points[k]);
+        record.molten += more;
+        for (const auto& of_plane : points)
+            record.points.insert(record.points.end(), of_plane.begin(), of_plane.end());
+    }
+    record.previous = s.nodes.temperature;
+    record.previous_time = s.time;
+}
+
+} // namespace meltscope

@@ -1,5 +1,6 @@
 #include "meltscope/run/simulation.hpp"
 
+#include "meltscope/beam/volume_heating.hpp"
 #include "meltscope/mpm/face_flux.hpp"
 
 #include <algorithm>
@@ -74,13 +75,17 @@ void deposit_laser_heat(Simulation& s, double dt) {
         const BeamPosition beam = beam_now(laser, s.time + 0.5 * dt, power);
         if (power <= 0.0)
             continue;
-        const Absorption a = absorb(s.light_maps[l], laser, beam.position, power, elements, energy);
+        const bool at_surface = laser.profile != BeamProfile::volumetric;
+        const Absorption a =
+            at_surface
+                ? absorb(s.light_maps[l], laser, beam.position, power, elements, energy)
+                : deposit_volume(s.grid, s.particles, s.light_maps[l], laser, beam, power, dt, s.nodes);
         s.absorption[l] = a;
         s.ledger.emitted += power * dt;
         s.ledger.absorbed += a.absorbed * dt;
         s.ledger.missed += a.missed * dt;
         s.ledger.reflected += (power - a.missed - a.absorbed) * dt;
-        any = any || a.absorbed > 0.0;
+        any = any || (at_surface && a.absorbed > 0.0);
     }
     if (!any)
         return;

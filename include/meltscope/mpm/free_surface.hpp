@@ -32,9 +32,9 @@ struct FreeSurface {
 /// Finds the free surface. `at_surface`: heat goes in at the foot points x_s; otherwise at the particles (the
 /// seed's volume source in the band).
 ///
-/// A node's share of the surface is A_i = dx^3 |grad phi_i| hat(phi_i), hat(s) = max(0, 1 - |s|/w)/w, w = (|n_x| + |n_y| + |n_z|) dx, and a
-/// particle takes a_p = sum_i A_i N_ip s_p / sum_q N_iq s_q with s_p = v_p |sum_i phi_hat_i grad N_ip| if
-/// |phi_hat_p| <= 0.45.
+/// A node's share of the surface is A_i = dx^3 |grad phi_i| hat(phi_i), hat(s) = max(0, 1 - |s|/w)/w, w =
+/// (|n_x| + |n_y| + |n_z|) dx, and a particle takes a_p = sum_i A_i N_ip s_p / sum_q N_iq s_q with s_p = v_p
+/// |sum_i phi_hat_i grad N_ip| if |phi_hat_p| <= 0.45.
 FreeSurface find_free_surface(const Grid& grid, const Particles& particles, const Nodes& nodes,
                               const LevelSetOptions& options, bool at_surface);
 

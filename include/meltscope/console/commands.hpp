@@ -1,0 +1,107 @@
+#pragma once
+
+#include "meltscope/console/arguments.hpp"
+#include "meltscope/console/console_state.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace meltscope {
+
+/// What a word of a command's arguments can be, for completion.
+enum class Completes { nothing, parameter, command, file, view, field, path_verb };
+
+/// Whom a command concerns.
+enum class Effect {
+    looks,    ///< changes nothing: watchers may use it
+    controls, ///< the going of the run, not its state
+    changes   ///< the run
+};
+
+/// What a handler works with.
+struct Call {
+    ConsoleState& console;
+    Run& run;
+    Arguments& arguments;
+    std::string journal; ///< the handler's: the command as a replay will find it; empty if nothing changed
+    bool starts = false; ///< the handler's: set the run going
+};
+
+/// One row of the table from which parser, help, completion and manual come.
+struct Command {
+    std::string name;
+    std::string syntax;  ///< arguments
+    std::string help;    ///< one or a few sentences
+    std::string example; ///< whole lines
+    Completes completes = Completes::nothing;
+    Effect effect = Effect::looks;
+    std::string (*handler)(Call&) = nullptr; ///< returns the text of the reply; throws what is wrong
+};
+
+/// All commands, in the order of the manual.
+const std::vector<Command>& command_table();
+
+/// The command that `word` is or unambiguously begins. Throws CommandError.
+const Command& find_command(const std::string& word);
+
+/// What `help` and `help COMMAND` say.
+std::string help_text();
+std::string help_text(const Command& command);
+
+/// The manual in Markdown, made from the table and the parameters.
+std::string console_manual();
+
+/// What completion has to know of a run.
+struct CompletionNames {
+    std::vector<std::string> parameters;
+    std::vector<std::string> fields;
+};
+
+/// The words that may stand at the end of `line`, which is the text before the cursor. Folders end in a
+/// slash.
+std::vector<std::string> completions(std::string_view line, const CompletionNames& names);
+
+/// A `path load` or `path append` with the rows of its file in it, for those that wait; other lines as they
+/// are.
+std::string with_path_file_inlined(const std::string& line);
+
+// Handlers by subject; see command_table.
+std::string do_status(Call&);
+std::string do_run(Call&);
+std::string do_pause(Call&);
+std::string do_continue(Call&);
+std::string do_step(Call&);
+std::string do_until(Call&);
+std::string do_at(Call&);
+std::string do_land(Call&);
+std::string do_quit(Call&);
+
+std::string do_get(Call&);
+std::string do_set(Call&);
+std::string do_list(Call&);
+std::string do_power(Call&);
+std::string do_speed(Call&);
+std::string do_spot(Call&);
+std::string do_on(Call&);
+std::string do_off(Call&);
+std::string do_view(Call&);
+std::string do_field(Call&);
+
+std::string do_path(Call&);
+
+std::string do_snapshot(Call&);
+std::string do_probe(Call&);
+std::string do_pool(Call&);
+std::string do_energy(Call&);
+
+std::string do_save(Call&);
+std::string do_restore(Call&);
+std::string do_layer(Call&);
+
+std::string do_record(Call&);
+std::string do_history(Call&);
+std::string do_source(Call&);
+std::string do_help(Call&);
+
+} // namespace meltscope

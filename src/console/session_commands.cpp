@@ -1,0 +1,66 @@
+#include "meltscope/console/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+/// Commands about commands.
+namespace meltscope {
+
+std::string do_record(Call& call) {
+    std::filesystem::path& recording = call.console.recording;
+    if (call.arguments.empty())
+        return recording.empty() ? "nothing is recorded; record FILE begins"
+                                 : "recording into " + recording.string();
+    if (call.arguments.peek() == "stop") {
+        call.arguments.word("stop");
+        call.arguments.done();
+        const std::string text =
+            recording.empty() ? "nothing was recorded" : "recorded into " + recording.string();
+        recording.clear();
+        return text;
+    }
+    const std::filesystem::path file = call.arguments.word("the file");
+    call.arguments.done();
+    if (std::filesystem::exists(file))
+        throw CommandError(fmt::format("{} is there already", file.string()));
+    if (!(std::ofstream(file) << "# Commands for `source FILE` or --script FILE\n"))
+        throw CommandError(fmt::format("{} cannot be written", file.string()));
+    recording = file;
+    return fmt::format("recording into {}; `record stop` ends it", file.string());
+}
+
+std::string do_history(Call& call) {
+    call.arguments.done();
+    constexpr std::size_t most = 50;
+    const std::vector<std::string>& lines = call.console.lines;
+    std::string text;
+    for (std::size_t n = lines.size() > most ? lines.size() - most : 0; n < lines.size(); ++n)
+        text += fmt::format("{}{:>4}  {}", text.empty() ? "" : "\n", n + 1, lines[n]);
+    return text.empty() ? "no command yet" : text;
+}
+
+std::string do_source(Call& call) {
+    const std::string file = call.arguments.word("the file");
+    call.arguments.done();
+    std::ifstream stream(file);
+    if (!stream || std::filesystem::is_directory(file))
+        throw CommandError(fmt::format("{} cannot be read", file));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);)
+        lines.push_back(line);
+    call.console.sourced = std::move(lines);
+    call.console.sourced_from = file;
+    return {};
+}
+
+std::string do_help(Call& call) {
+    if (call.arguments.empty())
+        return help_text();
+    const std::string name = call.arguments.word("the command");
+    call.arguments.done();
+    return help_text(find_command(name));
+}
+
+} // namespace meltscope

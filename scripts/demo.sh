@@ -8,7 +8,7 @@ folder=runs/in625_single_track
 
 ./scripts/setup.sh
 cmake --preset release
-cmake --build --preset release --target meltscope
+cmake --build --preset release --target meltscope_app
 ./build/release/meltscope run "$scenario" --output "$folder" --overwrite
 
 all_there=true

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace meltscope {
+
+/// Version of the HDF5 library in use, such as "1.10.8".
+std::string hdf5_version();
+
+} // namespace meltscope

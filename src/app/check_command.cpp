@@ -1,0 +1,98 @@
+#include "commands.hpp"
+#include "exit_codes.hpp"
+#include "machine.hpp"
+#include "run_setup.hpp"
+#include "stopwatch.hpp"
+#include "text.hpp"
+
+#include "meltscope/scenario/scenario_file.hpp"
+#include "meltscope/scenario/setup.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace meltscope {
+namespace {
+
+struct CheckRequest {
+    std::filesystem::path scenario;
+    std::vector<std::string> overrides;
+};
+
+void print(const std::string& line) {
+    std::fputs((line + "\n").c_str(), stdout);
+}
+
+/// The step size in s once something has melted: the start is cold, where diffusion is as a rule slower or
+/// faster.
+double melting_step(const Simulation& cold) {
+    double alpha = 0.0;
+    for (const Material& material : cold.parameters.materials)
+        alpha = std::max(alpha, max_diffusivity(make_equation_of_state(material), cold.coldest_temperature,
+                                                2.0 * material.liquidus));
+    double coldest_alpha = 0.0;
+    for (const EquationOfState& eos : cold.eos)
+        coldest_alpha =
+            std::max(coldest_alpha, max_diffusivity(eos, cold.coldest_temperature, cold.peak_temperature));
+    StepLimit limit;
+    const double dt = largest_step(cold, limit);
+    return limit == StepLimit::diffusion ? dt * coldest_alpha / alpha : dt;
+}
+
+/// Wall seconds of a step: the median of a few.
+double seconds_per_step(Simulation& simulation) {
+    std::vector<double> seconds;
+    while (seconds.size() < 5 && simulation.time < simulation.parameters.time.end) {
+        const Stopwatch watch;
+        advance(simulation, simulation.parameters.time.end);
+        seconds.push_back(watch.seconds());
+    }
+    return median(seconds);
+}
+
+int execute(const CheckRequest& request) {
+    InputOfRun input = read_input(request.scenario, {}, request.overrides);
+    const std::string resolved = to_toml(input.scenario);
+    const double bytes = estimate(input.scenario).bytes;
+    PreparedRun prepared = prepare_run(std::move(input));
+    Simulation& simulation = prepared.run.simulation;
+
+    print(resolved);
+    const double end = simulation.parameters.time.end;
+    const double dt = melting_step(simulation);
+    const double steps = std::ceil(end / dt);
+    const double step_seconds = seconds_per_step(simulation);
+    print(fmt::format("# particles  {}", simulation.particles.count()));
+    print(fmt::format("# nodes      {}", simulation.grid.node_count()));
+    print(fmt::format("# memory     {:.2f} GB, of {:.2f} GB there are", std::max(bytes, peak_memory()) * 1e-9,
+                      physical_memory() * 1e-9));
+    print(fmt::format("# dt         {}, with molten material", in_si(dt, "s")));
+    print(fmt::format("# steps      about {:.0f} to t = {}", steps, in_si(end, "s")));
+    print(fmt::format("# time       about {} at {} as measured just now, outputs and pictures not counted",
+                      clock_time(steps * step_seconds),
+                      in_si(double(simulation.particles.count()) / step_seconds, "particle-steps/s")));
+    return exit_code::done;
+}
+
+} // namespace
+
+void add_check(CLI::App& program, Action& chosen) {
+    auto request = std::make_shared<CheckRequest>();
+    CLI::App* check = program.add_subcommand(
+        "check", "Read and validate a scenario; print it with every default, and what its run will need");
+    check->add_option("SCENARIO", request->scenario, "Scenario file (TOML)")->required();
+    check->add_option("--set", request->overrides, "Change a value of the scenario; repeatable")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->take_all();
+    check->footer("What is printed is a scenario that can be run as it is.\n"
+                  "Example:\n  meltscope check scenarios/quick_look.toml --set \"domain.cell_size=10 um\"");
+    check->callback([request, &chosen] { chosen = [request] { return execute(*request); }; });
+}
+
+} // namespace meltscope

@@ -1,0 +1,277 @@
+#include "commands.hpp"
+#include "exit_codes.hpp"
+#include "machine.hpp"
+#include "run_outputs.hpp"
+#include "run_setup.hpp"
+#include "signals.hpp"
+#include "step_watch.hpp"
+#include "stopwatch.hpp"
+#include "text.hpp"
+
+#include "meltscope/scenario/setup.hpp"
+#include "meltscope/scenario/units.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace meltscope {
+namespace {
+
+struct RunRequest {
+    std::filesystem::path scenario; ///< empty: that of the checkpoint
+    std::filesystem::path output;   ///< empty: by default
+    std::vector<std::string> overrides;
+    std::string until; ///< a time with its unit; empty: the scenario's end
+    std::int64_t steps = 0;
+    int threads = 0; ///< 0: as many as OpenMP gives
+    std::filesystem::path restart;
+    bool no_render = false;
+    std::string backend = "auto";
+    std::string wall_limit;
+    bool overwrite = false, quiet = false, verbose = false;
+};
+
+std::optional<double> time_of(const std::string& text) {
+    if (text.empty())
+        return std::nullopt;
+    try {
+        std::size_t used = 0;
+        const double seconds = std::stod(text, &used);
+        if (used == text.size())
+            return seconds; // a number alone is in seconds, as in scenarios
+    } catch (const std::logic_error&) {
+    }
+    try {
+        return Units().to_si(text, quantity::time);
+    } catch (const UnitError& error) {
+        throw UsageError(fmt::format("--until {}: {}", text, error.what()));
+    }
+}
+
+double wall_limit_of(const std::string& text) {
+    if (text.empty())
+        return never;
+    const auto seconds = parse_clock_time(text);
+    if (!seconds)
+        throw UsageError(fmt::format("--wall-limit {}: expected HH:MM:SS, for example 01:30:00", text));
+    return *seconds;
+}
+
+viz::Backend backend_of(const RunRequest& request) {
+    if (request.no_render)
+        return viz::Backend::none;
+    try {
+        return viz::backend_from_name(request.backend);
+    } catch (const viz::VizError& error) {
+        throw UsageError(error.what());
+    }
+}
+
+/// Where the outputs go, and whether the run goes on in the folder of the checkpoint that it is taken up
+/// from.
+struct OutputFolder {
+    std::filesystem::path path;
+    bool goes_on = false;
+};
+
+OutputFolder output_folder(const RunRequest& request) {
+    const auto own = request.restart.empty() ? std::nullopt : folder_of_checkpoint(request.restart);
+    OutputFolder folder;
+    if (!request.output.empty())
+        folder.path = request.output;
+    else if (own)
+        folder.path = *own;
+    else
+        folder.path = std::filesystem::path("runs") /
+                      (request.scenario.empty() ? request.restart : request.scenario).stem();
+    std::error_code not_there;
+    folder.goes_on = own && std::filesystem::equivalent(folder.path, *own, not_there);
+    return folder;
+}
+
+/// Signals and the wall clock, as a source of commands.
+CommandSource stops(const Stopwatch& watch, double wall_limit, Terminal& terminal) {
+    const auto apply = [watch, wall_limit, &terminal](Run& run) {
+        if (stop_signal() != 0)
+            run.stop_reason = "asked to stop by a signal";
+        else if (watch.seconds() >= wall_limit)
+            run.stop_reason = fmt::format("reached the wall limit of {}", clock_time(wall_limit));
+        if (take_checkpoint_request()) {
+            terminal.note("asked for a checkpoint by a signal");
+            run.wanted.checkpoint = true;
+        }
+    };
+    return {apply};
+}
+
+void describe(const PreparedRun& prepared, const std::filesystem::path& folder, int threads,
+              Terminal& terminal) {
+    const Simulation& simulation = prepared.run.simulation;
+    terminal.note(version_text());
+    if (prepared.resumed_at)
+        terminal.say(
+            fmt::format("going on at step {}, t = {}", simulation.step, in_si(simulation.time, "s")));
+    terminal.say(fmt::format("{}: {} particles, {} nodes, {} thread{}, into {}",
+                             prepared.scenario.title.empty() ? "run" : prepared.scenario.title,
+                             simulation.particles.count(), simulation.grid.node_count(), threads,
+                             threads == 1 ? "" : "s", folder.string()));
+}
+
+void print_ledger(const Ledger& ledger, Terminal& terminal) {
+    const auto line = [&](const char* name, double energy) {
+        if (energy != 0.0)
+            terminal.say(fmt::format("  {:<30} {:>13.6g} J", name, energy));
+    };
+    terminal.say("Energy ledger");
+    line("emitted by the lasers", ledger.emitted);
+    line("missed the material", ledger.missed);
+    line("reflected", ledger.reflected);
+    line("absorbed", ledger.absorbed);
+    line("flowed in through faces", ledger.face_flux_in);
+    line("added with particles", ledger.added);
+    line("radiated", ledger.radiated);
+    line("convected", ledger.convected);
+    line("evaporated", ledger.evaporated);
+    line("conducted out through faces", ledger.conducted_out);
+    line("change of what is stored", ledger.stored - ledger.stored_at_start);
+    terminal.say(fmt::format("  {:<30} {:>13.1e}", "relative residual", ledger.relative_residual()));
+}
+
+void print_phases(const Run& run, std::int64_t steps, Terminal& terminal) {
+    const WallSeconds& wall = run.wall;
+    terminal.note(fmt::format(
+        "seconds: solver {:.2f}, level set {:.2f}, in-situ {:.2f}, tables and checkpoints {:.2f}; "
+        "peak memory {:.2f} GB",
+        wall.solver, wall.level_set, wall.in_situ, wall.output, peak_memory() * 1e-9));
+    if (steps > 0 && wall.solver > 0.0)
+        terminal.say(fmt::format(
+            "{} steps in {:.1f} s, {:.1f} M particle-steps/s", steps, wall.solver + wall.level_set,
+            1e-6 * double(steps) * double(run.simulation.particles.count()) / wall.solver));
+}
+
+/// Steps the run; run.json says how it ended, whatever happens.
+RunOutcome step_through(Run& run, const RunConnections& connections, RunOutputs& outputs) {
+    try {
+        return run_to_end(run, connections);
+    } catch (const std::exception& error) {
+        outputs.finish(run, "failed", error.what());
+        throw;
+    }
+}
+
+int execute(const RunRequest& request) {
+    const Stopwatch since_start;
+    if (request.scenario.empty() && request.restart.empty())
+        throw UsageError("a SCENARIO is required, or a checkpoint to go on from (--restart)");
+    const std::optional<double> until = time_of(request.until);
+    const double wall_limit = wall_limit_of(request.wall_limit);
+    const viz::Backend backend = backend_of(request);
+    if (request.threads > 0)
+        omp_set_num_threads(request.threads);
+    const int threads = omp_get_max_threads();
+    watch_signals();
+
+    Terminal terminal(request.quiet     ? Terminal::Volume::quiet
+                      : request.verbose ? Terminal::Volume::verbose
+                                        : Terminal::Volume::normal);
+    const auto scenario_file =
+        request.scenario.empty() ? std::nullopt : std::optional<std::filesystem::path>(request.scenario);
+    // The folder is claimed before the long work of filling the domain, the input is judged before both.
+    const OutputFolder folder = output_folder(request);
+    InputOfRun input = read_input(scenario_file, request.restart, request.overrides);
+    const RunFolder claim(folder.path, folder.goes_on      ? ExistingRun::resume
+                                       : request.overwrite ? ExistingRun::overwrite
+                                                           : ExistingRun::refuse);
+    PreparedRun prepared = prepare_run(std::move(input));
+    terminal.log_to(claim.paths().log(), folder.goes_on);
+    if (claim.stale_owner())
+        terminal.note(fmt::format("the run of process {} in this folder ended without cleaning up",
+                                  *claim.stale_owner()));
+
+    Run& run = prepared.run;
+    run.until = until;
+    const std::int64_t first_step = run.simulation.step;
+    if (request.steps > 0)
+        run.last_step = first_step + request.steps;
+    describe(prepared, folder.path, threads, terminal);
+
+    for (const std::string& note : scenario_notes(prepared.scenario))
+        terminal.note(note);
+    RunOutputs outputs(claim.paths(), prepared, backend, threads, terminal);
+    StepWatch watch(terminal, outputs);
+    RunConnections connections;
+    connections.commands.push_back(scheduled_layers(prepared.scenario.layers));
+    connections.commands.push_back(stops(since_start, wall_limit, terminal));
+    connections.after_step.push_back([&](const Run& r) { watch.after_step(r); });
+    connections.sinks = outputs.sinks();
+    connections.sinks.push_back(watch.sink());
+
+    const RunOutcome outcome = step_through(run, connections, outputs);
+    terminal.end_progress();
+    balance(run.simulation);
+    const bool stopped = outcome == RunOutcome::stopped;
+    outputs.finish(run, stopped ? "stopped" : "done", stopped ? *run.stop_reason : "");
+
+    if (stopped)
+        terminal.say(fmt::format("Stopped at step {}, t = {}: {}.", run.simulation.step,
+                                 in_si(run.simulation.time, "s"), *run.stop_reason));
+    print_ledger(run.simulation.ledger, terminal);
+    print_phases(run, run.simulation.step - first_step, terminal);
+    terminal.say("Results");
+    for (const std::string& line : outputs.list())
+        terminal.say(line);
+    return stopped ? exit_code::stopped : exit_code::done;
+}
+
+} // namespace
+
+void add_run(CLI::App& program, Action& chosen) {
+    auto request = std::make_shared<RunRequest>();
+    CLI::App* run = program.add_subcommand("run", "Run a scenario");
+    run->add_option("SCENARIO", request->scenario, "Scenario file (TOML)");
+    run->add_option("-o,--output", request->output, "Folder for the results; default runs/SCENARIO")
+        ->type_name("DIR");
+    run->add_option("--set", request->overrides,
+                    "Change a value of the scenario, e.g. laser.power=200 W; repeatable")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->take_all();
+    auto* until =
+        run->add_option("--until", request->until, "Run up to this simulated time, e.g. \"0.5 ms\"");
+    until->type_name("TIME");
+    run->add_option("--steps", request->steps, "Run so many steps")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber)
+        ->excludes(until);
+    run->add_option("--threads", request->threads, "Threads of the solver; default all cores")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    run->add_option(
+           "--restart", request->restart,
+           "Go on from this checkpoint, in its run folder unless --output names another; the scenario in the "
+           "checkpoint holds, changed by SCENARIO and --set if given")
+        ->type_name("CHECKPOINT");
+    run->add_flag("--no-render", request->no_render, "No pictures, no movie; data files as ever");
+    run->add_option("--render-backend", request->backend, "auto, x11, xvfb, egl, osmesa or none")
+        ->type_name("NAME");
+    run->add_option("--wall-limit", request->wall_limit, "Stop with a checkpoint after so long")
+        ->type_name("HH:MM:SS");
+    run->add_flag("--overwrite", request->overwrite, "Replace the run that the folder holds");
+    auto* quiet = run->add_flag("-q,--quiet", request->quiet, "Warnings and errors only");
+    run->add_flag("-v,--verbose", request->verbose, "Show all that goes into log.txt")->excludes(quiet);
+    run->footer(
+        "SIGINT (Ctrl-C) and SIGTERM stop at the next step with a checkpoint (exit code 3), SIGUSR1 makes a\n"
+        "checkpoint and goes on.\n"
+        "Examples:\n"
+        "  meltscope run scenarios/quick_look.toml\n"
+        "  meltscope run scenarios/quick_look.toml --set \"laser.power=200 W\" --set \"checkpoint.every=0.1 "
+        "ms\" "
+        "-o runs/hot\n"
+        "  meltscope run --restart runs/hot/checkpoints/step_000000500.h5");
+    run->callback([request, &chosen] { chosen = [request] { return execute(*request); }; });
+}
+
+} // namespace meltscope

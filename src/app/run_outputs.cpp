@@ -1,0 +1,199 @@
+#include "run_outputs.hpp"
+
+#include "text.hpp"
+
+#include "meltscope/io/atomic_file.hpp"
+#include "meltscope/io/run_state.hpp"
+#include "meltscope/io/run_summary.hpp"
+#include "meltscope/io/solidification_table.hpp"
+#include "meltscope/scenario/scenario_file.hpp"
+#include "meltscope/version.hpp"
+#include "viz/movie.hpp"
+#include "viz/solidification_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace meltscope {
+namespace {
+
+viz::FileOptions file_options(const RunPaths& paths, const OutputSpec& output) {
+    viz::FileOptions options;
+    options.run_dir = paths.root;
+    options.surface = output.surface;
+    options.pool = output.pool;
+    options.grid = output.grid;
+    options.particles = output.particles != OutputSpec::Particles::none;
+    options.compression = output.compression == OutputSpec::Compression::lz4    ? viz::Compression::lz4
+                          : output.compression == OutputSpec::Compression::zlib ? viz::Compression::zlib
+                                                                                : viz::Compression::none;
+    options.precision = output.precision == OutputSpec::Precision::float64 ? viz::Precision::float64
+                                                                           : viz::Precision::float32;
+    return options;
+}
+
+viz::RenderOptions render_options(const RunPaths& paths, const RenderSpec& render) {
+    viz::RenderOptions options;
+    options.run_dir = paths.root;
+    options.size = render.size;
+    options.views = render.views;
+    options.color_range = render.color_range;
+    options.colormap = render.colormap;
+    options.background =
+        render.background == RenderSpec::Background::light ? viz::Background::light : viz::Background::dark;
+    return options;
+}
+
+viz::BacklogPolicy backlog_policy(const RenderSpec& render) {
+    viz::BacklogPolicy policy;
+    policy.on_full = render.on_backlog == RenderSpec::OnBacklog::drop ? viz::BacklogPolicy::OnFull::drop
+                                                                      : viz::BacklogPolicy::OnFull::wait;
+    return policy;
+}
+
+} // namespace
+
+std::int64_t count_pictures(const RunPaths& paths, const std::string& view) {
+    std::int64_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(paths.frames()))
+        count += entry.path().filename().string().starts_with(view + "_");
+    return count;
+}
+
+double movie_rate(std::int64_t pictures) {
+    return std::clamp(double(pictures) / 6.0, 5.0, 25.0);
+}
+
+std::string pool_size(const Snapshot& snapshot) {
+    if (snapshot.pools.empty() || snapshot.pools.front().volume <= 0.0)
+        return {};
+    const PoolFigures& pool = snapshot.pools.front();
+    return fmt::format("{:.0f} x {:.0f} x {:.0f} um", 1e6 * pool.length, 1e6 * pool.width, 1e6 * pool.depth);
+}
+
+RunOutputs::RunOutputs(RunPaths paths, const PreparedRun& prepared, viz::Backend backend, int threads,
+                       Terminal& terminal)
+    : paths_(std::move(paths)), scenario_(prepared.scenario), scenario_text_(to_toml(prepared.scenario)),
+      draws_(backend != viz::Backend::none && !prepared.scenario.render.views.empty()), threads_(threads),
+      terminal_(terminal),
+      table_(paths_.melt_pool_table(), prepared.run.simulation.parameters.isotherms, prepared.resumed_at),
+      pipeline_(
+          file_options(paths_, scenario_.output), render_options(paths_, scenario_.render), backend,
+          backlog_policy(scenario_.render), [this](const std::string& text) { terminal_.warn(text); },
+          [this](const std::string& text) { terminal_.note(text); }),
+      steps_at_start_(prepared.run.simulation.step) {
+    if (prepared.resumed_at) {
+        pipeline_.resume_at(*prepared.resumed_at);
+        drop_checkpoints_after(paths_, prepared.run.simulation.step);
+    }
+    write_file_atomically(paths_.scenario(), scenario_text_);
+    write_summary(prepared.run, "running", "");
+}
+
+std::vector<Sink> RunOutputs::sinks() {
+    const auto pictures_and_files = [this](const Run&, const Due& due,
+                                           const std::shared_ptr<const Snapshot>& snapshot) {
+        pipeline_.submit(snapshot, due.picture && draws_, due.output);
+    };
+    const auto table = [this](const Run&, const Due& due, const std::shared_ptr<const Snapshot>& snapshot) {
+        pool_ = pool_size(*snapshot);
+        if (due.output)
+            table_.append(*snapshot);
+    };
+    const auto checkpoints = [this](const Run& run, const Due& due, const std::shared_ptr<const Snapshot>&) {
+        if (due.checkpoint)
+            write_checkpoint_of(run);
+    };
+    return {{Sink::Wants::snapshot, &WallSeconds::in_situ, pictures_and_files},
+            {Sink::Wants::snapshot, &WallSeconds::output, table},
+            {Sink::Wants::state, &WallSeconds::output, checkpoints}};
+}
+
+void RunOutputs::write_checkpoint_of(const Run& run) {
+    const auto path = paths_.checkpoint(run.simulation.step);
+    std::filesystem::create_directories(path.parent_path());
+    write_checkpoint(path, checkpoint_of(run, scenario_text_));
+    prune_checkpoints(paths_, scenario_.checkpoint.keep);
+    last_checkpoint_ = path;
+    terminal_.note(fmt::format("checkpoint {}", path.string()));
+    write_summary(run, "running", "");
+}
+
+void RunOutputs::write_summary(const Run& run, const std::string& outcome, const std::string& message) const {
+    const Simulation& simulation = run.simulation;
+    const std::int64_t steps_made = simulation.step - steps_at_start_;
+    RunSummary summary;
+    summary.version = version;
+    summary.git_hash = git_hash;
+    summary.title = scenario_.title;
+    summary.outcome = outcome;
+    summary.message = message;
+    summary.threads = threads_;
+    summary.particles = simulation.particles.count();
+    summary.steps = simulation.step;
+    summary.time = simulation.time;
+    summary.wall_seconds = {{"solver", run.wall.solver},
+                            {"level_set", run.wall.level_set},
+                            {"in_situ", run.wall.in_situ},
+                            {"output", run.wall.output},
+                            {"total", since_start_.seconds()}};
+    if (steps_made > 0 && run.wall.solver > 0.0)
+        summary.particle_steps_per_second = double(steps_made) * double(summary.particles) / run.wall.solver;
+    summary.ledger = ledger_entries(simulation.ledger);
+    summary.ledger.emplace_back("relative_residual", simulation.ledger.relative_residual());
+    const viz::PipelineStats stats = pipeline_.stats();
+    summary.rendering = {{"frames", double(stats.frames)},         {"files", double(stats.files)},
+                         {"waits", double(stats.waits)},           {"wait_seconds", stats.wait_seconds},
+                         {"drops", double(stats.drops)},           {"busy_seconds", stats.busy_seconds},
+                         {"render_seconds", stats.render_seconds}, {"file_seconds", stats.file_seconds}};
+    write_run_summary(paths_.summary(), summary);
+}
+
+void RunOutputs::make_movies() {
+    for (const std::string& view : viz::views_with_frames(paths_.frames())) {
+        try {
+            viz::encode_movie(paths_.frames(), view, paths_.movie(view),
+                              movie_rate(count_pictures(paths_, view)));
+        } catch (const viz::VizError& error) {
+            terminal_.warn(fmt::format("no movie of {}: {}", view, error.what()));
+        }
+    }
+}
+
+void RunOutputs::finish(const Run& run, const std::string& outcome, const std::string& message) {
+    pipeline_.finish();
+    const viz::PipelineStats stats = pipeline_.stats();
+    terminal_.note(fmt::format(
+        "pictures {}, files {}; the solver waited {} times for them, {:.2f} s; pictures given up {}",
+        stats.frames, stats.files, stats.waits, stats.wait_seconds, stats.drops));
+    if (draws_ && std::filesystem::is_directory(paths_.frames()))
+        make_movies();
+    if (run.solidification) {
+        write_solidification_table(paths_.solidification_table(), run.solidification->points);
+        viz::write_solidification_points(paths_.solidification_points(), run.solidification->points);
+    }
+    write_summary(run, outcome, message);
+}
+
+std::vector<std::string> RunOutputs::list() const {
+    std::vector<std::string> lines;
+    const auto add = [&](std::string_view what, const std::filesystem::path& path) {
+        if (std::filesystem::exists(path))
+            lines.push_back(fmt::format("  {:<16} {}", what, path.string()));
+    };
+    for (const std::string& view : viz::view_names())
+        add("movie", paths_.movie(view));
+    add("pictures", paths_.frames());
+    for (const char* series : {"particles", "surface", "pool", "grid"})
+        add("for ParaView", paths_.collection(series));
+    add("melt-pool table", paths_.melt_pool_table());
+    add("solidification", paths_.solidification_table());
+    add("solidification", paths_.solidification_points());
+    if (last_checkpoint_)
+        add("checkpoint", *last_checkpoint_);
+    add("log", paths_.log());
+    return lines;
+}
+
+} // namespace meltscope

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "run_setup.hpp"
+#include "stopwatch.hpp"
+#include "terminal.hpp"
+
+#include "meltscope/io/melt_pool_table.hpp"
+#include "meltscope/io/run_folder.hpp"
+#include "viz/pipeline.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meltscope {
+
+/// Everything that a run leaves in its folder: connects the sinks, keeps run.json, makes the movies at the
+/// end.
+class RunOutputs {
+  public:
+    /// The folder is there and locked. Writes run.toml and run.json; for a run taken up from a checkpoint,
+    /// goes on with the files there.
+    RunOutputs(RunPaths paths, const PreparedRun& prepared, viz::Backend backend, int threads,
+               Terminal& terminal);
+
+    /// Sinks for pictures and files, the melt-pool table and checkpoints.
+    std::vector<Sink> sinks();
+
+    /// The pool's size at the last output, for the progress line; empty if nothing is molten.
+    const std::string& pool() const { return pool_; }
+
+    /// Waits for the pictures, makes the movies and writes run.json for the last time. `message` says why the
+    /// run stopped or failed.
+    void finish(const Run& run, const std::string& outcome, const std::string& message);
+
+    /// One line a kind of file: what it is and where.
+    std::vector<std::string> list() const;
+
+  private:
+    void write_summary(const Run& run, const std::string& outcome, const std::string& message) const;
+    void write_checkpoint_of(const Run& run);
+    void make_movies();
+
+    RunPaths paths_;
+    const Scenario& scenario_;
+    std::string scenario_text_;
+    bool draws_;
+    int threads_;
+    Terminal& terminal_;
+    MeltPoolTable table_;
+    viz::Pipeline pipeline_;
+    std::string pool_;
+    std::int64_t steps_at_start_;
+    std::optional<std::filesystem::path> last_checkpoint_;
+    Stopwatch since_start_;
+};
+
+/// How many pictures of a view a run folder holds.
+std::int64_t count_pictures(const RunPaths& paths, const std::string& view);
+
+/// Pictures a second for a movie of so many pictures: it lasts about six seconds if that takes 5 to 25 a
+/// second.
+double movie_rate(std::int64_t pictures);
+
+/// Length x width x depth of the pool at the first isotherm; empty if there is none.
+std::string pool_size(const Snapshot& snapshot);
+
+} // namespace meltscope

@@ -1,0 +1,42 @@
+#include "signals.hpp"
+
+#include <csignal>
+
+namespace meltscope {
+namespace {
+
+// A signal handler can reach nothing but this.
+volatile std::sig_atomic_t stop_requested = 0;
+volatile std::sig_atomic_t checkpoint_requested = 0;
+
+void on_signal(int signal) {
+    if (signal == SIGUSR1)
+        checkpoint_requested = 1;
+    else
+        stop_requested = signal;
+}
+
+} // namespace
+
+void watch_signals() {
+    struct sigaction action = {};
+    action.sa_handler = on_signal;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART;
+    sigaction(SIGUSR1, &action, nullptr);
+    action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+int stop_signal() {
+    return stop_requested;
+}
+
+bool take_checkpoint_request() {
+    const bool asked = checkpoint_requested != 0;
+    checkpoint_requested = 0;
+    return asked;
+}
+
+} // namespace meltscope

@@ -306,6 +306,10 @@ vtkSmartPointer<vtkPolyData> join_pool(const PoolSurfaces& pool) {
     append->Update();
     auto joined = vtkSmartPointer<vtkPolyData>::New();
     joined->ShallowCopy(append->GetOutput());
+    if (joined->GetPoints() == nullptr) {
+        joined->SetPoints(
+            vtkNew<vtkPoints>()); // readers call a file without points broken, one with none is fine
+    }
     return joined;
 }
 

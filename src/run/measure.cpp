@@ -3,6 +3,7 @@
 #include "meltscope/mpm/group_stencils.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -88,11 +89,30 @@ std::vector<double> node_temperatures(const Simulation& s) {
     return without_padding(s.grid, values_at_nodes(s.grid, std::move(t)));
 }
 
-double hottest_inside(const std::vector<double>& phi, const std::vector<double>& temperature) {
+/// The hottest point of the material, up to its surface: linear along the grid's edges, as the pool is
+/// measured.
+double hottest_inside(const NodeLattice& nodes, const std::vector<double>& phi,
+                      const std::vector<double>& temperature) {
+    const std::array<std::int64_t, 3> stride{1, nodes.count[0], nodes.count[0] * nodes.count[1]};
     double hottest = 0.0;
-    for (std::size_t i = 0; i < phi.size(); ++i)
-        if (phi[i] <= 0.0)
-            hottest = std::max(hottest, temperature[i]);
+#pragma omp parallel for schedule(static) reduction(max : hottest)
+    for (std::int64_t k = 0; k < nodes.count[2]; ++k)
+        for (std::int64_t j = 0; j < nodes.count[1]; ++j)
+            for (std::int64_t i = 0; i < nodes.count[0]; ++i) {
+                const std::array<std::int64_t, 3> place{i, j, k};
+                const std::int64_t at = i + j * stride[1] + k * stride[2];
+                if (phi[at] <= 0.0)
+                    hottest = std::max(hottest, temperature[at]);
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (place[axis] + 1 == nodes.count[axis])
+                        continue;
+                    const std::int64_t next = at + stride[axis];
+                    if ((phi[at] <= 0.0) == (phi[next] <= 0.0))
+                        continue;
+                    const double share = phi[at] / (phi[at] - phi[next]);
+                    hottest = std::max(hottest, std::lerp(temperature[at], temperature[next], share));
+                }
+            }
     return hottest;
 }
 
@@ -189,7 +209,7 @@ Snapshot take_snapshot(const Simulation& s, ParticleSelection particles) {
     snapshot.phi_hat = share(without_padding(s.grid, s.surface.phi_hat));
     snapshot.mass = share(without_padding(s.grid, s.nodes.mass));
     snapshot.temperature = share(node_temperatures(s));
-    snapshot.peak_temperature = hottest_inside(*snapshot.phi, *snapshot.temperature);
+    snapshot.peak_temperature = hottest_inside(snapshot.nodes, *snapshot.phi, *snapshot.temperature);
     snapshot.absorbed_energy = s.ledger.absorbed;
     snapshot.lost_energy = s.ledger.lost() + s.ledger.missed;
     for (const Laser& laser : s.parameters.lasers)

@@ -10,8 +10,6 @@
 namespace meltscope {
 namespace {
 
-/// Lines that may wait for one speaker.
-constexpr std::size_t most_lines = 100'000;
 /// How often a waiting console looks whether the program wants to stop.
 constexpr std::chrono::milliseconds look_interval{50};
 
@@ -41,7 +39,7 @@ bool Console::say(Id speaker, std::string line) {
     for (const auto& voice : voices_) {
         if (voice->id != speaker)
             continue;
-        if (voice->lines.size() >= most_lines)
+        if (voice->lines.size() >= voice->speaker.most_lines)
             return false;
         ++voice->count;
         const std::string& name = voice->speaker.name;
@@ -165,16 +163,20 @@ void Console::tell(Id id, const std::string& line, const Reply& reply) {
         answer(line, reply);
 }
 
-void Console::tell_all(const std::string& text, bool ok) {
+void Console::tell_others(Id id, const std::string& text) {
     std::vector<std::function<void(const std::string&, const Reply&)>> answers;
     {
         const std::lock_guard lock(mutex_);
         for (const auto& voice : voices_)
-            if (voice->speaker.answer)
+            if (voice->id != id && voice->speaker.answer)
                 answers.push_back(voice->speaker.answer);
     }
     for (const auto& answer : answers)
-        answer({}, {ok, text, false});
+        answer({}, {true, text, false});
+}
+
+void Console::tell_all(const std::string& text) {
+    tell_others(0, text);
 }
 
 std::deque<Console::Line>::iterator Console::Voice::next_line(std::int64_t goals_reached) {
@@ -219,9 +221,11 @@ void Console::carry_out(Run& run, Id id, const Line& line) {
     }
     const std::int64_t goal_before = state_.goal.number;
     Reply reply;
+    bool looks = true;
     try {
         const std::vector<std::string> words = split_words(line.text);
-        if (!speaker.may_change && !words.empty() && find_command(words[0]).effect != Effect::looks)
+        looks = words.empty() || find_command(words[0]).effect == Effect::looks;
+        if (!speaker.may_change && !looks)
             throw CommandError("another console has the say; here only commands that look are carried out");
         state_.must_succeed = speaker.must_succeed;
         reply = execute(state_, run, line.text);
@@ -243,7 +247,7 @@ void Console::carry_out(Run& run, Id id, const Line& line) {
             if (!reply.ok) // what is left of a sourced file
                 while (!voice->lines.empty() && !voice->lines.front().given)
                     voice->lines.pop_front();
-            if (voice->lines.size() + state_.sourced.size() > most_lines) {
+            if (voice->lines.size() + state_.sourced.size() > speaker.most_lines) {
                 reply = {false, "too many lines wait: does a file read itself?", false};
                 while (!voice->lines.empty() && !voice->lines.front().given)
                     voice->lines.pop_front();
@@ -256,6 +260,8 @@ void Console::carry_out(Run& run, Id id, const Line& line) {
         }
     }
     tell(id, line.text, reply);
+    if (reply.ok && !looks) // all may know what is done to the run
+        tell_others(id, fmt::format("({}) {}", line.text, reply.text));
     if (!reply.ok && speaker.must_succeed) {
         script_error_ = reply.text;
         stop(state_, run, reply.text);
@@ -324,7 +330,7 @@ void Console::apply(Run& run) {
         begin(run);
     for (;;) {
         for (const Reply& reply : execute_due(state_, run)) {
-            tell_all(reply.text, reply.ok);
+            tell_all(reply.ok ? reply.text : "error: " + reply.text);
             if (!reply.ok && run.stop_reason)
                 script_error_ = reply.text;
         }

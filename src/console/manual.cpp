@@ -73,7 +73,7 @@ on to its end; at the end of a pipe it stops there. The first error of a script 
 code is 2.
 
 `meltscope attach DIR` opens a console on a run under way. One of those attached can change the run, the others look on: they see
-what is said and may use the commands that only show something.
+what is said and may use the commands that only show something. `detach` or Ctrl-D leaves the run as it is, `quit` stops it.
 
 ## The journal
 

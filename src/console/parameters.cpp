@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace meltscope {
 namespace {
@@ -155,38 +156,55 @@ std::string set_background(ConsoleState& console, Run&, Arguments& arguments) {
     return settings.background;
 }
 
-std::string set_radiation(ConsoleState&, Run& run, Arguments& arguments) {
+/// Puts changed losses in force; they stay as they were if the solver refuses them.
+void put(Run& run, Arguments& arguments, const PhysicsOptions& changed) {
+    arguments.done();
     PhysicsOptions& physics = run.simulation.parameters.physics;
-    const bool on = arguments.on_or_off("physics.radiation");
-    if (!on && physics.reabsorption)
-        throw CommandError("physics.reabsorption needs radiation; turn that off first");
-    physics.radiation = on;
-    return on_off(on);
+    const PhysicsOptions before = std::exchange(physics, changed);
+    try {
+        update_losses(run.simulation);
+    } catch (...) {
+        physics = before;
+        update_losses(run.simulation);
+        throw;
+    }
+}
+
+std::string switch_loss(Run& run, Arguments& arguments, bool PhysicsOptions::*loss, const std::string& name) {
+    PhysicsOptions changed = run.simulation.parameters.physics;
+    changed.*loss = arguments.on_or_off(name);
+    if (changed.reabsorption && !changed.radiation)
+        throw CommandError("physics.reabsorption needs physics.radiation");
+    put(run, arguments, changed);
+    return on_off(changed.*loss);
+}
+
+std::string set_radiation(ConsoleState&, Run& run, Arguments& arguments) {
+    return switch_loss(run, arguments, &PhysicsOptions::radiation, "physics.radiation");
 }
 
 std::string set_evaporation(ConsoleState&, Run& run, Arguments& arguments) {
-    const bool on = arguments.on_or_off("physics.evaporation");
-    run.simulation.parameters.physics.evaporation = on;
-    return on_off(on);
+    return switch_loss(run, arguments, &PhysicsOptions::evaporation, "physics.evaporation");
 }
 
 std::string set_reabsorption(ConsoleState&, Run& run, Arguments& arguments) {
-    PhysicsOptions& physics = run.simulation.parameters.physics;
-    const bool on = arguments.on_or_off("physics.reabsorption");
-    if (on && !physics.radiation)
-        throw CommandError("physics.reabsorption needs radiation; `set physics.radiation on` first");
-    if (on != physics.reabsorption) {
-        physics.reabsorption = on;
-        update_geometry(run.simulation);
-    }
-    return on_off(on);
+    return switch_loss(run, arguments, &PhysicsOptions::reabsorption, "physics.reabsorption");
+}
+
+std::string set_convection(ConsoleState&, Run& run, Arguments& arguments) {
+    PhysicsOptions changed = run.simulation.parameters.physics;
+    changed.convection = arguments.quantity("physics.convection", quantity::heat_transfer_coefficient);
+    require_between(changed.convection, 0.0, infinite, "physics.convection", "W/m^2/K");
+    put(run, arguments, changed);
+    return written(changed.convection, quantity::heat_transfer_coefficient);
 }
 
 std::string set_ambient(ConsoleState&, Run& run, Arguments& arguments) {
-    const double ambient = arguments.quantity("physics.ambient", quantity::temperature);
-    require_positive(ambient, "physics.ambient", "K");
-    run.simulation.parameters.physics.ambient = ambient;
-    return written(ambient, quantity::temperature);
+    PhysicsOptions changed = run.simulation.parameters.physics;
+    changed.ambient = arguments.quantity("physics.ambient", quantity::temperature);
+    require_positive(changed.ambient, "physics.ambient", "K");
+    put(run, arguments, changed);
+    return written(changed.ambient, quantity::temperature);
 }
 
 std::string set_blend_time(ConsoleState&, Run& run, Arguments& arguments) {
@@ -381,6 +399,12 @@ std::vector<Parameter> parameters_of(const std::vector<Laser>& lasers) {
          {"on", "off"},
          [](Console, const Run& run) { return on_off(physics(run).reabsorption); },
          set_reabsorption},
+        {"physics.convection",
+         "W/m^2/K, 0 or more",
+         "Heat transfer from the free surface to the surroundings.",
+         {},
+         [](Console, const Run& run) { return shown(physics(run).convection, "W/m^2/K"); },
+         set_convection},
         {"physics.ambient",
          "K, above 0",
          "Temperature of the surroundings.",

@@ -17,12 +17,13 @@ namespace meltscope {
 
 /// Whoever gives commands: the prompt, a script, a pipe, an attached console.
 struct Speaker {
-    std::string name;          ///< for messages: a file name ...; empty: lines have no place
-    bool waits = false;        ///< its next line comes after the goal of the last: scripts and pipes
-    bool must_succeed = false; ///< its first error stops the run
-    bool keeps_run = false;    ///< at its end the run waits for this speaker: the prompt
-    bool stops_at_end = false; ///< when it has said all, the run stops: pipes
-    bool may_change = true;    ///< false: only commands that look
+    std::string name;                 ///< for messages: a file name ...; empty: lines have no place
+    bool waits = false;               ///< its next line comes after the goal of the last: scripts and pipes
+    bool must_succeed = false;        ///< its first error stops the run
+    bool keeps_run = false;           ///< at its end the run waits for this speaker: the prompt
+    bool stops_at_end = false;        ///< when it has said all, the run stops: pipes
+    bool may_change = true;           ///< false: only commands that look
+    std::size_t most_lines = 100'000; ///< that may wait
     /// Called on the solver's thread for every line that was carried out, and for what the run itself has to
     /// say (empty line). Must not wait.
     std::function<void(const std::string& line, const Reply& reply)> answer;
@@ -92,7 +93,8 @@ class Console {
     void retire_silent_voices(Run& run);
     bool waits_for_nobody(const Run& run) const;
     void reach_goal(Run& run);
-    void tell_all(const std::string& text, bool ok = true);
+    void tell_all(const std::string& text);
+    void tell_others(Id id, const std::string& text);
     void tell(Id id, const std::string& line, const Reply& reply);
     void publish(const Run& run);
 

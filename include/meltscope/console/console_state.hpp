@@ -1,7 +1,7 @@
 #pragma once
 
-#include "meltscope/build/powder.hpp"
 #include "meltscope/console/journal.hpp"
+#include "meltscope/run/powder_layer.hpp"
 #include "meltscope/run/run_loop.hpp"
 #include "meltscope/scenario/units.hpp"
 
@@ -32,7 +32,7 @@ struct ConsoleHost {
     std::filesystem::path folder;                   ///< run folder, for journal.txt; empty: no file is kept
     std::string scenario;                           ///< the resolved scenario, as checkpoints hold it
     RunParameters parameters;                       ///< that the scenario asks for
-    std::optional<PowderSpec> powder;               ///< of the scenario, the pattern for new layers
+    std::optional<PowderLayer> layer;               ///< of the scenario, the pattern for new ones
     RenderSettings render;                          ///< at the start
     std::vector<std::string> fields{"temperature"}; ///< that pictures can show
 

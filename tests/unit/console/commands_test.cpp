@@ -21,7 +21,7 @@ bool has(const std::string& text, const std::string& part) {
 
 /// A console on a tiny run.
 struct Tiny : ::testing::Test {
-    Run run = start_tiny();
+    meltscope::Run run = start_tiny();
     ConsoleState console{tiny_host()};
 
     std::string ok(const std::string& line) {
@@ -102,7 +102,7 @@ TEST_F(ConsoleCommands, power_overrides_powers_of_the_path) {
     ok("path line 100 um 60 um speed 0.5 power 3");
     ok("power red 12");
     double power = 0.0;
-    beam_now(laser(), run.simulation.time + 200e-6, power);
+    beam_now(laser(), run.simulation.time + 170e-6, power);
     EXPECT_EQ(power, 12.0);
 }
 
@@ -123,7 +123,7 @@ TEST_F(ConsoleCommands, values_out_of_range_and_wrong_units_change_nothing) {
                              "set output.every 0",
                              "set output.every -1 s",
                              "set output.every_steps 0",
-                             "set physics.ambient -3 degC",
+                             "set physics.ambient -300 degC",
                              "set physics.transfer flip",
                              "set boundary.x_min warm",
                              "set boundary.x_min temperature -3",
@@ -146,6 +146,7 @@ TEST_F(ConsoleCommands, values_out_of_range_and_wrong_units_change_nothing) {
                              "layer",
                              "layer thickness 1",
                              "layer thickness 40 um",
+                             "layer thickness 400 um homogenised",
                              "step 0",
                              "step x",
                              "run 0.0",
@@ -187,6 +188,7 @@ TEST_F(ConsoleCommands, every_parameter_is_shown_and_most_can_be_set_to_what_the
              {"physics.evaporation", "on"},
              {"physics.reabsorption", "on"},
              {"physics.ambient", "310 K"},
+             {"physics.convection", "20 W/m^2/K"},
              {"physics.blend_time", "1e-05 s"},
              {"physics.diffusion", "energy"},
              {"time.cfl", "0.25"},
@@ -244,7 +246,7 @@ TEST_F(ConsoleCommands, a_path_file_goes_into_the_journal_with_its_rows) {
     const ScanPath loaded = laser().path;
     const std::string journal = run.journal;
     std::filesystem::remove(folder / "path.txt");
-    Run again = start_tiny();
+    meltscope::Run again = start_tiny();
     ConsoleState other{tiny_host()};
     const std::string command = parse_journal(journal, "j").at(0).command;
     const Reply reply = execute(other, again, command);
@@ -255,7 +257,7 @@ TEST_F(ConsoleCommands, a_path_file_goes_into_the_journal_with_its_rows) {
 
 TEST_F(ConsoleCommands, looking_changes_neither_state_nor_journal) {
     steps(3);
-    ok("at 100 us off");
+    ok("at 1 ms off");
     const CheckpointData before = testing::kept(run);
     for (const char* line :
          {"status", "list", "get laser.power", "path show", "probe 40 um 60 um 30 um", "pool", "energy",
@@ -290,13 +292,13 @@ TEST_F(ConsoleCommands, restore_puts_state_steering_journal_and_waiting_commands
     const TemporaryFolder folder;
     const std::string file = (folder / "a.h5").string();
     ok("power 15");
-    ok("at 100 us power 30");
+    ok("at 1 ms power 30");
     steps(4);
     ok("save " + file);
     const CheckpointData before = testing::kept(run);
     steps(4);
     ok("set boundary.x_min temperature 500 K");
-    ok("at 120 us off");
+    ok("at 1 ms off");
     ok("restore " + file);
     testing::expect_equal(testing::kept(run), before);
     ASSERT_EQ(console.waiting.size(), 1u);

@@ -43,6 +43,7 @@ absorptivity = 0.4
 path = [{move = [40e-6, 60e-6, 60e-6]}, {to = [120e-6, 60e-6, 60e-6], speed = 0.5}]
 [time]
 end = 200e-6
+max_step = 4e-6
 [output]
 every = 40e-6
 )";

@@ -1,0 +1,132 @@
+#include "attach_socket.hpp"
+
+#include "meltscope/console/line_editor.hpp"
+
+#include <poll.h>
+
+#include <array>
+#include <condition_variable>
+#include <mutex>
+
+namespace meltscope {
+namespace {
+
+Descriptor connect_to(const std::filesystem::path& folder) {
+    const Descriptor opened = open_own_folder(folder);
+    Descriptor connection(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    const sockaddr_un address = address_in(opened);
+    if (!connection ||
+        connect(connection.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+        throw AttachError(errno == ENOENT || errno == ECONNREFUSED
+                              ? fmt::format("no run is under way in {}", folder.string())
+                              : fmt::format("{}: {}", folder.string(), std::strerror(errno)));
+    if (peer_user(connection.get()) != geteuid())
+        throw AttachError(fmt::format("the run in {} is another user's", folder.string()));
+    return connection;
+}
+
+bool send_all(int connection, const std::string& text) {
+    for (std::size_t sent = 0; sent < text.size();) {
+        const ssize_t count = send(connection, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+        if (count < 0 && errno == EINTR)
+            continue;
+        if (count <= 0)
+            return false;
+        sent += std::size_t(count);
+    }
+    return true;
+}
+
+/// Lines as they come; false at the end.
+class LineReader {
+  public:
+    explicit LineReader(int connection) : connection_(connection) {}
+
+    bool next(std::string& line) {
+        std::size_t end = 0;
+        while ((end = buffer_.find('\n')) == std::string::npos) {
+            std::array<char, 4096> bytes;
+            const ssize_t count = recv(connection_, bytes.data(), bytes.size(), 0);
+            if (count < 0 && errno == EINTR)
+                continue;
+            if (count <= 0)
+                return false;
+            buffer_.append(bytes.data(), std::size_t(count));
+        }
+        line = buffer_.substr(0, end);
+        buffer_.erase(0, end + 1);
+        return true;
+    }
+
+  private:
+    int connection_;
+    std::string buffer_;
+};
+
+} // namespace
+
+bool attach(const std::filesystem::path& folder, bool watch) {
+    const Descriptor connection = connect_to(folder);
+    const bool script = isatty(STDIN_FILENO) != 1;
+    send_all(connection.get(),
+             fmt::format("meltscope 1 {} {}\n", watch ? "watch" : "write", script ? "script" : "prompt"));
+    LineReader reader(connection.get());
+    std::string line;
+    if (!reader.next(line))
+        throw AttachError(fmt::format("the run in {} does not answer", folder.string()));
+    if (line.starts_with('q'))
+        throw AttachError(line.substr(1));
+
+    std::mutex mutex;
+    std::int64_t asked = 0, answered = 0;
+    bool all_said = false, failed = false, interrupted = false;
+    const auto leave = [&] {
+        const std::lock_guard lock(mutex);
+        all_said = true;
+        if (!script || answered == asked)
+            shutdown(connection.get(), SHUT_RDWR);
+    };
+    LineEditor::Callbacks callbacks;
+    callbacks.line = [&](const std::string& text) {
+        if (!script && text == "detach") {
+            leave();
+            return;
+        }
+        {
+            const std::lock_guard lock(mutex);
+            ++asked;
+            interrupted = false;
+        }
+        send_all(connection.get(), text + "\n");
+    };
+    callbacks.interrupt = [&] {
+        const bool again = std::exchange(interrupted, true);
+        send_all(connection.get(), again ? "quit\n" : "pause\n");
+    };
+    callbacks.end = leave;
+    callbacks.complete = [](std::string_view typed) {
+        CompletionNames names;
+        for (const char* laser : {"power", "speed", "spot_radius", "absorptivity", "on"})
+            names.parameters.push_back(fmt::format("laser.{}", laser));
+        return completions(typed, names);
+    };
+    LineEditor editor("meltscope> ", history_file(), std::move(callbacks));
+    do {
+        const std::string text = line.empty() ? line : line.substr(1);
+        const char letter = line.empty() ? ' ' : line[0];
+        if (letter == 'd' || letter == 'f') {
+            const std::lock_guard lock(mutex);
+            ++answered;
+            failed = failed || letter == 'f';
+            if (script && all_said && answered == asked)
+                break;
+        } else {
+            editor.print(text);
+        }
+        if (letter == 'q')
+            break;
+    } while (reader.next(line));
+    return !script || !failed;
+}
+
+} // namespace meltscope

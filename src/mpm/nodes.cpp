@@ -44,10 +44,10 @@ double mixture_temperature(const std::vector<EquationOfState>& materials,
         }
         (energy > 0.0 ? high : low) = t;
         double next = t - energy / capacity;
-        if (!(next >= low && next <= high))
-            next = 0.5 * (low + high);
         if (std::abs(next - t) <= 1e-13 * std::abs(t))
             return next;
+        if (!(next > low && next < high)) // at an end it would go to and fro for ever
+            next = 0.5 * (low + high);
         t = next;
     }
     return t;
@@ -170,7 +170,6 @@ void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials,
             nodes.energy[a][i] = materials[a].energy(t);
     }
 
-    mirror_ghosts(grid, boundary, nodes.temperature);
     for (int a = 0; a < count; ++a)
         mirror_ghosts(grid, boundary, nodes.energy[a]);
     // An odd continuation about the face's temperature: what is linear through the face stays linear.
@@ -182,6 +181,7 @@ void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials,
                     nodes.temperature[ghost] = 2.0 * boundary[f].temperature - nodes.temperature[mirror];
                 }
             });
+    mirror_ghosts(grid, boundary, nodes.temperature); // last: where two faces meet it copies what was set
 }
 
 } // namespace meltscope

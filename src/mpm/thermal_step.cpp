@@ -171,7 +171,12 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
                           const std::vector<EquationOfState>& materials, const Boundary& boundary,
                           const StepOptions& options, double dt, Nodes& nodes) {
     const int count = int(materials.size());
-    double conducted = -sum_near_fixed_faces(nodes, nodes.increment); // J
+    // What deposit() left on nodes without mass never comes in, here or elsewhere.
+    fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.increment);
+    double conducted = 0.0; // J
+    for (const std::int64_t i : nodes.near_fixed_faces)
+        if (nodes.mass[i] > 0.0)
+            conducted -= nodes.increment[i];
     fold_ghosts(grid, boundary, AtFixedFaces::odd, nodes.increment);
     const Field& inertia = nodes.inertia.empty() ? nodes.mass : nodes.inertia;
     if (options.affine)
@@ -195,9 +200,10 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
             nodes.new_energy[a][i] = materials[a].energy(t);
     }
     for (int a = 0; a < count; ++a) {
-        mirror_ghosts(grid, boundary, nodes.new_energy[a]);
         if (!nodes.near_fixed_faces.empty())
             fix_face_energies(grid, boundary, materials[a], inertia, nodes.new_energy[a]);
+        mirror_ghosts(grid, boundary,
+                      nodes.new_energy[a]); // last: where two faces meet it copies what was set
     }
 
     // What the particles will gain beyond D_i near these faces came through them.

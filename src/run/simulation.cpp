@@ -297,7 +297,11 @@ void update_losses(Simulation& s) {
 }
 
 void update_boundary(Simulation& s) {
-    const std::vector<Field> energy = s.nodes.energy;
+    // e(T_i), not e_i: at faces of fixed temperature it is T_i that continues the field beyond them.
+    std::vector<Field> energy(s.eos.size(), Field(s.grid.size, 0.0));
+    for (std::size_t a = 0; a < energy.size(); ++a)
+        for (std::int64_t i = 0; i < s.grid.size; ++i)
+            energy[a][i] = s.eos[a].energy(s.nodes.temperature[i]);
     make_derived(s);
     particles_to_grid(s.grid, s.particles, &energy, s.nodes);
     find_node_state(s);

@@ -15,6 +15,8 @@ namespace {
 /// closely.
 constexpr double touching = 1e-7;
 constexpr double touching_ground = 1e-4;
+/// How deep a ball may go into what `distance` describes, by its radius: half of the overlap that is allowed.
+constexpr double deepest_in_ground = 0.01;
 /// Slope (sine) below which a ball lies still.
 constexpr double level = 1e-3;
 /// Longest way in one go along what a ball touches; it loses touch by the square of that.
@@ -135,7 +137,11 @@ class Descent {
                 return;
             }
             way.normalize();
-            const double length = free_way(way, normals_.empty() ? margin - travelled : longest_slide);
+            const double length =
+                clear_of_ground(way, free_way(way, normals_.empty() ? margin - travelled : longest_slide));
+            if (length == 0.0) {
+                return; // held in a dip
+            }
             bed_.center[ball_] += length * way;
             travelled += length;
         }
@@ -191,6 +197,21 @@ class Descent {
             length = std::min(length, ground_gap_);
         }
         return length;
+    }
+
+    /// The move shortened until it does not lead into what `distance` describes: where that is concave, the
+    /// one normal that a ball has of it does not keep the ball out.
+    double clear_of_ground(const Vec3& way, double length) const {
+        if (!bed_.distance) {
+            return length;
+        }
+        constexpr int most_halvings = 8;
+        for (int i = 0; i < most_halvings; ++i, length *= 0.5) {
+            if (bed_.distance(place() + length * way) > (1.0 - deepest_in_ground) * radius()) {
+                return length;
+            }
+        }
+        return 0.0;
     }
 
     BallsInBox& bed_;

@@ -202,8 +202,8 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
     for (int a = 0; a < count; ++a) {
         if (!nodes.near_fixed_faces.empty())
             fix_face_energies(grid, boundary, materials[a], inertia, nodes.new_energy[a]);
-        mirror_ghosts(grid, boundary,
-                      nodes.new_energy[a]); // last: where two faces meet it copies what was set
+        // Last: where two faces meet it copies what was set.
+        mirror_ghosts(grid, boundary, nodes.new_energy[a]);
     }
 
     // What the particles will gain beyond D_i near these faces came through them.

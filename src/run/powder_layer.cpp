@@ -18,12 +18,14 @@ namespace {
 struct Relief {
     Lattice lattice;
     std::vector<std::int64_t> filled; ///< sites up to the column's top; x fastest
+    std::vector<double> height;       ///< m, of the column's top
 
     double lower_edge(int axis, std::int64_t site) const {
         return lattice.origin[axis] + (double(site) - 0.5) * lattice.spacing;
     }
     std::int64_t column(std::int64_t i, std::int64_t j) const { return i + lattice.count[0] * j; }
-    double height(std::int64_t i, std::int64_t j) const { return lower_edge(2, filled[column(i, j)]); }
+    double height_of(std::int64_t i, std::int64_t j) const { return height[column(i, j)]; }
+    /// The site at a place, or the nearest.
     std::int64_t site_of(int axis, double place) const {
         const double site = std::floor((place - lower_edge(axis, 0)) / lattice.spacing);
         return std::clamp<std::int64_t>(std::int64_t(site), 0, lattice.count[axis] - 1);
@@ -40,6 +42,42 @@ Relief relief_of(const Simulation& s) {
         std::int64_t& top = relief.filled[relief.column(relief.site_of(0, x[0]), relief.site_of(1, x[1]))];
         top = std::max(top, relief.site_of(2, x[2]) + 1);
     }
+    for (const std::int64_t filled : relief.filled)
+        relief.height.push_back(relief.lower_edge(2, filled));
+    return relief;
+}
+
+/// Heights as a ball of that radius feels them that rolls over the relief: pores that it does not enter are
+/// closed. `sign` 1: of its centre, from the heights (a dilation); -1: of what it touches, from the centre's
+/// (an erosion).
+std::vector<double> rolled(const Relief& relief, const std::vector<double>& from, double radius,
+                           double sign) {
+    const double spacing = relief.lattice.spacing;
+    const auto reach = std::int64_t(radius / spacing);
+    const Index3& count = relief.lattice.count;
+    std::vector<double> result(from.size());
+#pragma omp parallel for schedule(static)
+    for (std::int64_t j = 0; j < count[1]; ++j)
+        for (std::int64_t i = 0; i < count[0]; ++i) {
+            double most = -HUGE_VAL;
+            for (std::int64_t v = std::max<std::int64_t>(j - reach, 0);
+                 v <= std::min(j + reach, count[1] - 1); ++v)
+                for (std::int64_t u = std::max<std::int64_t>(i - reach, 0);
+                     u <= std::min(i + reach, count[0] - 1); ++u) {
+                    const double across = spacing * spacing * double((u - i) * (u - i) + (v - j) * (v - j));
+                    if (across <= radius * radius)
+                        most = std::max(most, sign * from[relief.column(u, v)] +
+                                                  std::sqrt(radius * radius - across));
+                }
+            result[relief.column(i, j)] = sign * most;
+        }
+    return result;
+}
+
+/// The relief without the pores into which a ball of that radius cannot fall.
+Relief closed(Relief relief, double radius) {
+    const std::vector<double> center = rolled(relief, relief.height, radius, 1.0);
+    relief.height = rolled(relief, center, radius, -1.0);
     return relief;
 }
 
@@ -48,8 +86,8 @@ Relief relief_of(const Simulation& s) {
 double distance_to(const Relief& relief, const Vec3& point, double reach) {
     const double spacing = relief.lattice.spacing;
     const std::int64_t home_i = relief.site_of(0, point[0]), home_j = relief.site_of(1, point[1]);
-    const bool outside = point[2] >= relief.height(home_i, home_j);
-    double nearest = std::min(reach, std::abs(point[2] - relief.height(home_i, home_j)));
+    const bool outside = point[2] >= relief.height_of(home_i, home_j);
+    double nearest = std::min(reach, std::abs(point[2] - relief.height_of(home_i, home_j)));
     const auto gap = [&](int axis, std::int64_t site) {
         const double low = relief.lower_edge(axis, site);
         return std::max({0.0, low - point[axis], point[axis] - (low + spacing)});
@@ -64,7 +102,8 @@ double distance_to(const Relief& relief, const Vec3& point, double reach) {
             for (std::int64_t i = home_i - ring; i <= home_i + ring; i += whole_row ? 1 : 2 * ring) {
                 if (i < 0 || i >= relief.lattice.count[0])
                     continue;
-                const double rise = outside ? point[2] - relief.height(i, j) : relief.height(i, j) - point[2];
+                const double rise =
+                    outside ? point[2] - relief.height_of(i, j) : relief.height_of(i, j) - point[2];
                 const double gap_z = std::max(0.0, rise);
                 const double gap_x = gap(0, i);
                 nearest = std::min(nearest, std::sqrt(gap_x * gap_x + gap_y * gap_y + gap_z * gap_z));
@@ -74,7 +113,8 @@ double distance_to(const Relief& relief, const Vec3& point, double reach) {
     return outside ? nearest : -nearest;
 }
 
-std::vector<Ball> balls_of_layer(const Relief& relief, const PowderLayer& layer, const Box& space) {
+std::vector<Ball> balls_of_layer(const Relief& bare, const PowderLayer& layer, const Box& space) {
+    const Relief relief = closed(bare, 0.5 * layer.d50);
     PowderSpec spec;
     spec.box = space;
     spec.d10 = layer.d10;

@@ -1,6 +1,6 @@
 #include "viz/solidification_file.hpp"
 
-#include "viz/pipeline.hpp"
+#include "viz/options.hpp"
 
 #include <array>
 #include <utility>

@@ -6,6 +6,8 @@
 namespace meltscope {
 
 bool same_instant(double a, double b) {
+    if (a == never || b == never)
+        return a == b;
     return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
 }
 

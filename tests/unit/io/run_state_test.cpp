@@ -1,0 +1,125 @@
+#include "../run/block.hpp"
+
+#include "meltscope/io/run_state.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace meltscope;
+using namespace meltscope::test;
+
+namespace {
+
+Laser weird_laser() {
+    Laser laser;
+    laser.name = "b";
+    laser.power = 100.0 / 3.0;
+    laser.absorptivity = 0.1 + 0.2;
+    laser.spot_radius = 4e-5;
+    laser.profile = BeamProfile::super_gaussian;
+    laser.direction = Vec3(0.0, 0.1, -1.0).normalized();
+    laser.path.start = Vec3(1.0 / 3.0, 1e-300, -0.0);
+    laser.path.segments.push_back({PathSegment::Kind::line, Vec3(1, 2, 3), 0.8, 0.0, 55.5, true});
+    laser.path.segments.push_back({PathSegment::Kind::dwell, Vec3(1, 2, 3), 0.0, 1e-3, std::nullopt, false});
+    return laser;
+}
+
+Steering weird_steering() {
+    Steering steering;
+    steering.boundary[2] = {FaceCondition::Kind::convection, 300.0, 12.5, 0.0};
+    steering.lasers = {Laser{}, weird_laser()};
+    steering.physics.blend_time = 1e-5 / 3.0;
+    steering.physics.radiation = true;
+    steering.time = {2e-3, 0.4, std::nullopt};
+    steering.schedule.output.every_steps = 7;
+    steering.schedule.picture = Cadence{1e-5, std::nullopt};
+    steering.schedule.particles = ParticleSelection::melt;
+    return steering;
+}
+
+Run stepped_block() {
+    Run run;
+    run.simulation = steel_block(0.7);
+    run.journal = "at step 1 t=0: power 5\n";
+    for (int n = 0; n < 3; ++n)
+        advance(run.simulation, 1.0);
+    balance(run.simulation);
+    return run;
+}
+
+} // namespace
+
+TEST(Steering, reads_back_bit_for_bit) {
+    const Steering steering = weird_steering();
+    const Steering back = read_steering(steering_text(steering));
+    EXPECT_EQ(steering_text(back), steering_text(steering));
+    EXPECT_EQ(back.lasers[1].power, 100.0 / 3.0);
+    EXPECT_EQ(back.lasers[1].path, steering.lasers[1].path);
+    EXPECT_EQ(back.physics.blend_time, steering.physics.blend_time);
+    EXPECT_FALSE(back.time.max_step.has_value());
+    EXPECT_EQ(back.schedule.picture->every, 1e-5);
+    EXPECT_EQ(back.boundary[2].coefficient, 12.5);
+}
+
+TEST(Steering, text_that_is_none_is_refused_by_its_key) {
+    EXPECT_THROW(read_steering(""), SteeringError);
+    std::string text = steering_text(weird_steering());
+    text.replace(text.find("\"cfl\""), 5, "\"xyz\"");
+    try {
+        read_steering(text);
+        FAIL();
+    } catch (const SteeringError& error) {
+        EXPECT_NE(std::string(error.what()).find("cfl"), std::string::npos);
+    }
+}
+
+TEST(Steering, what_the_new_scenario_changes_wins_and_what_was_steered_stays) {
+    const Steering original = weird_steering();
+    Steering steered = original, changed = original;
+    steered.lasers[1].power = 77.0; // by the console
+    steered.lasers[0].absorptivity = 0.9;
+    changed.time.end = 5e-3; // by the scenario
+    changed.lasers[0].absorptivity = 0.5;
+    const Steering result = with_changes(steered, original, changed);
+    EXPECT_EQ(result.lasers[1].power, 77.0);
+    EXPECT_EQ(result.lasers[0].absorptivity, 0.5);
+    EXPECT_EQ(result.time.end, 5e-3);
+    EXPECT_EQ(result.time.cfl, 0.4);
+}
+
+TEST(RunState, a_simulation_taken_from_a_checkpoint_goes_on_bit_for_bit) {
+    meltscope::Run run = stepped_block();
+    const CheckpointData data = checkpoint_of(run, "title = \"x\"");
+    meltscope::Run again;
+    again.simulation = simulation_from(data, block_parameters(), block_grid(), 2);
+    again.journal = data.journal;
+    for (int n = 0; n < 4; ++n) {
+        advance(run.simulation, 1.0);
+        advance(again.simulation, 1.0);
+    }
+    balance(run.simulation);
+    balance(again.simulation);
+    const CheckpointData a = checkpoint_of(run, ""), b = checkpoint_of(again, "");
+    EXPECT_EQ(a.time, b.time);
+    EXPECT_EQ(a.step, b.step);
+    EXPECT_EQ(a.dt, b.dt);
+    EXPECT_EQ(a.particles.specific_energy, b.particles.specific_energy);
+    EXPECT_EQ(a.grid[0].values, b.grid[0].values);
+    EXPECT_EQ(a.ledger, b.ledger);
+    EXPECT_EQ(a.journal, b.journal);
+}
+
+TEST(RunState, the_grid_is_saved_without_padding) {
+    const CheckpointData data = checkpoint_of(stepped_block(), "");
+    EXPECT_EQ(data.grid[0].dims, (std::vector<std::uint64_t>{11, 11, 15}));
+    EXPECT_EQ(data.grid[0].values.size(), 11u * 11u * 15u);
+}
+
+TEST(RunState, a_checkpoint_that_does_not_fit_is_refused) {
+    CheckpointData data = checkpoint_of(stepped_block(), "");
+    EXPECT_THROW(simulation_from(data, block_parameters(), block_grid({10, 8, 8}), 2), CheckpointError);
+    data.particles.material[3] = 4;
+    EXPECT_THROW(simulation_from(data, block_parameters(), block_grid(), 2), CheckpointError);
+    data.particles.material[3] = 0;
+    data.ledger.pop_back();
+    EXPECT_THROW(simulation_from(data, block_parameters(), block_grid(), 2), CheckpointError);
+}

@@ -180,9 +180,8 @@ void note_landing(ConsoleState& console, Run& run) {
     const double scheduled =
         std::min({next_due(schedule.output, time), next_due(schedule.picture.value_or(schedule.output), time),
                   next_due(schedule.checkpoint, time), next_landing(console, time)});
-    const bool aimed_there = *run.until < scheduled || same_instant(*run.until, scheduled);
-    if (!aimed_there || *run.until == scheduled)
-        return;
+    if (*run.until >= scheduled || same_instant(*run.until, scheduled))
+        return; // the loop lands on the scheduled instant
     console.landings.push_back(*run.until);
     note(console, run, fmt::format("land {} s", exact(*run.until)), false);
 }

@@ -30,7 +30,7 @@ class Scenes(ProgramTest):
             with self.subTest(path.stem):
                 folder = self.run_twin(path.stem)
                 run = json.loads((folder / "run.json").read_text())
-                self.assertLessEqual(abs(run["ledger"]["relative_residual"]), 1e-12)
+                self.assertLessEqual(abs(run["ledger"]["relative_residual"]), 1e-11)
                 with open(folder / "melt_pool.csv", newline="") as table:
                     rows = list(csv.DictReader(table))
                 self.assertGreater(max(float(row["peak_K"]) for row in rows), 1400.0)
@@ -45,7 +45,7 @@ class Scenes(ProgramTest):
                 self.must_succeed("check", path)
 
     def test_solidification_table_is_on_the_grid_and_in_order_of_time(self):
-        folder = self.run_twin("raster_hatch")
+        folder = self.run_twin("raster_hatch", "--set", "laser.pattern.hatch=40 um")
         with open(folder / "solidification.csv", newline="") as table:
             self.assertEqual(table.readline().strip(), "x,y,z,tm,tl,cr")
             rows = [tuple(map(float, row)) for row in csv.reader(table)]
@@ -112,8 +112,9 @@ class BadInput(ProgramTest):
     BOX = 'shape = "box"\nmin = [0, 0, 0]\nmax = ["400 um", "400 um", "100 um"]'
     PATH = 'path = [{move = ["100 um", "200 um", 0]}, {dwell = "50 us"}]'
 
-    def refuse(self, *words, body=BOX, path=PATH, physics="", material="in625", extra=""):
-        text = BODY.format(materials=SCENARIOS / "materials", material=material, body=body, path=path, physics=physics)
+    def refuse(self, *words, body=BOX, path=PATH, physics="", material="in625", extra="",
+               materials=SCENARIOS / "materials"):
+        text = BODY.format(materials=materials, material=material, body=body, path=path, physics=physics)
         (self.folder / "bad.toml").write_text(text + extra)
         message = self.must_refuse("run", "bad.toml", "--no-render", "--overwrite")
         for word in words:
@@ -133,7 +134,7 @@ class BadInput(ProgramTest):
 
     def test_a_path_file_with_a_wrong_mode_is_refused_with_its_line(self):
         (self.folder / "path.txt").write_text("Mode X Y Z Power Param\n1 1e-4 2e-4 0 100 1e-5\n7 2e-4 2e-4 0 100 0.8\n")
-        self.refuse("path.txt:3", "mode", path='path_file = "path.txt"')
+        self.refuse("path.txt:3", "Mode must be 0", path='path_file = "path.txt"')
 
     def test_a_path_file_with_a_missing_column_is_refused_with_its_line(self):
         (self.folder / "path.txt").write_text("Mode X Y Z Power Param\n1 1e-4 2e-4 0 100 1e-5\n0 2e-4 2e-4 0 100\n")
@@ -144,8 +145,10 @@ class BadInput(ProgramTest):
                     'd10 = "40 um"\nd50 = "40 um"\nd90 = "40 um"\npacking = 0.73')
 
     def test_a_loss_names_the_key_that_the_material_lacks(self):
-        self.refuse("boiling_point", "in625", physics="evaporation = true")
-        self.refuse("emissivity", "ss316l", physics="radiation = true", material="ss316l")
+        for effect, key in (("evaporation", "boiling_point"), ("radiation", "emissivity")):
+            lines = (SCENARIOS / "materials" / "in625.toml").read_text().splitlines(keepends=True)
+            (self.folder / "bare.toml").write_text("".join(line for line in lines if not line.startswith(key)))
+            self.refuse(key, '"bare"', physics=f"{effect} = true", material="bare", materials=self.folder)
 
     def test_homogenised_powder_names_the_key_that_the_material_lacks(self):
         self.refuse("conductivity.powder", "ss316l", body=self.BOX + '\nstate = "powder"', material="ss316l")

@@ -8,6 +8,10 @@ from program import SCENARIOS, ProgramTest
 
 TWINS = sorted((SCENARIOS / "coarse").glob("*.toml"))
 
+# Share of the energy that may go unaccounted for. Balls that the box cuts hang on nodes of tiny mass at its faces, and
+# their round-off is larger.
+RESIDUAL, RESIDUAL_OF_CUT_BALLS = 1e-12, 1e-11
+
 
 class Scenes(ProgramTest):
     def run_twin(self, name, *arguments):
@@ -30,7 +34,8 @@ class Scenes(ProgramTest):
             with self.subTest(path.stem):
                 folder = self.run_twin(path.stem)
                 run = json.loads((folder / "run.json").read_text())
-                self.assertLessEqual(abs(run["ledger"]["relative_residual"]), 1e-11)
+                limit = RESIDUAL_OF_CUT_BALLS if path.stem == "powder_reabsorption" else RESIDUAL
+                self.assertLessEqual(abs(run["ledger"]["relative_residual"]), limit)
                 with open(folder / "melt_pool.csv", newline="") as table:
                     rows = list(csv.DictReader(table))
                 self.assertGreater(max(float(row["peak_K"]) for row in rows), 1400.0)

@@ -4,6 +4,7 @@
 
 #include "meltscope/beam/scan_path.hpp"
 #include "meltscope/build/stl.hpp"
+#include "meltscope/console/journal.hpp"
 #include "meltscope/io/run_folder.hpp"
 #include "meltscope/scenario/nearest_word.hpp"
 #include "meltscope/scenario/scenario_file.hpp"
@@ -68,6 +69,8 @@ int carry_out(const Action& action) {
         return report(error.what(), exit_code::usage);
     } catch (const RunFolderError& error) {
         return report(error.what(), exit_code::usage);
+    } catch (const JournalError& error) { // not the journal of this run
+        return report(error.what(), exit_code::usage);
     } catch (const UnitError& error) {
         return report(error.what(), exit_code::usage);
     } catch (const std::invalid_argument& error) { // parameters that make no sense together
@@ -103,6 +106,7 @@ int main(int argc, char** argv) {
     add_bench(program, chosen);
     add_info(program, chosen);
     add_movie(program, chosen);
+    add_attach(program, chosen);
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& success) { // --help, --version

@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "machine.hpp"
+#include "run_console.hpp"
 #include "run_outputs.hpp"
 #include "run_setup.hpp"
 #include "signals.hpp"
@@ -28,6 +29,7 @@ struct RunRequest {
     std::int64_t steps = 0;
     int threads = 0; ///< 0: as many as OpenMP gives
     std::filesystem::path restart;
+    SteeringRequest steering;
     bool no_render = false;
     std::string backend = "auto";
     std::string wall_limit;
@@ -92,13 +94,20 @@ OutputFolder output_folder(const RunRequest& request) {
     return folder;
 }
 
+/// Why the run is to stop, if a signal or the wall clock says so.
+std::optional<std::string> stop_request(const Stopwatch& since_start, double wall_limit) {
+    if (stop_signal() != 0)
+        return "asked to stop by a signal";
+    if (since_start.seconds() >= wall_limit)
+        return fmt::format("reached the wall limit of {}", clock_time(wall_limit));
+    return std::nullopt;
+}
+
 /// Signals and the wall clock, as a source of commands.
-CommandSource stops(const Stopwatch& watch, double wall_limit, Terminal& terminal) {
-    const auto apply = [watch, wall_limit, &terminal](Run& run) {
-        if (stop_signal() != 0)
-            run.stop_reason = "asked to stop by a signal";
-        else if (watch.seconds() >= wall_limit)
-            run.stop_reason = fmt::format("reached the wall limit of {}", clock_time(wall_limit));
+CommandSource stops(const Stopwatch& since_start, double wall_limit, Terminal& terminal) {
+    const auto apply = [&since_start, wall_limit, &terminal](Run& run) {
+        if (const auto reason = stop_request(since_start, wall_limit))
+            run.stop_reason = *reason;
         if (take_checkpoint_request()) {
             terminal.note("asked for a checkpoint by a signal");
             run.wanted.checkpoint = true;
@@ -179,6 +188,9 @@ int execute(const RunRequest& request) {
                                         : Terminal::Volume::normal);
     const auto scenario_file =
         request.scenario.empty() ? std::nullopt : std::optional<std::filesystem::path>(request.scenario);
+    for (const auto& file : {request.steering.script, request.steering.replay})
+        if (!file.empty() && !std::filesystem::is_regular_file(file))
+            throw UsageError(fmt::format("{} cannot be read", file.string()));
     // The folder is claimed before the long work of filling the domain, the input is judged before both.
     const OutputFolder folder = output_folder(request);
     InputOfRun input = read_input(scenario_file, request.restart, request.overrides);
@@ -202,14 +214,18 @@ int execute(const RunRequest& request) {
         terminal.note(note);
     RunOutputs outputs(claim.paths(), prepared, backend, threads, terminal);
     StepWatch watch(terminal, outputs);
+    RunConsole console(request.steering, claim.paths(), prepared, outputs, terminal,
+                       [&] { return stop_request(since_start, wall_limit); });
     RunConnections connections;
     connections.commands.push_back(scheduled_layers(prepared.scenario.layers));
     connections.commands.push_back(stops(since_start, wall_limit, terminal));
+    connections.commands.push_back(console.source());
     connections.after_step.push_back([&](const Run& r) { watch.after_step(r); });
     connections.sinks = outputs.sinks();
     connections.sinks.push_back(watch.sink());
 
     const RunOutcome outcome = step_through(run, connections, outputs);
+    console.finish();
     terminal.end_progress();
     balance(run.simulation);
     const bool stopped = outcome == RunOutcome::stopped;
@@ -223,6 +239,8 @@ int execute(const RunRequest& request) {
     terminal.say("Results");
     for (const std::string& line : outputs.list())
         terminal.say(line);
+    if (const auto error = console.script_error())
+        throw UsageError(*error);
     return stopped ? exit_code::stopped : exit_code::done;
 }
 
@@ -254,6 +272,14 @@ void add_run(CLI::App& program, Action& chosen) {
            "Go on from this checkpoint, in its run folder unless --output names another; the scenario in the "
            "checkpoint holds, changed by SCENARIO and --set if given")
         ->type_name("CHECKPOINT");
+    run->add_flag("--repl", request->steering.prompt,
+                  "Steer the run at a prompt, or by commands from a pipe; it waits for `run`");
+    run->add_option("--script", request->steering.script,
+                    "Carry out the commands of this file first, then go on to the end")
+        ->type_name("FILE");
+    run->add_option("--replay", request->steering.replay,
+                    "Do again what a journal.txt says: ends in the same state bit for bit")
+        ->type_name("JOURNAL");
     run->add_flag("--no-render", request->no_render, "No pictures, no movie; data files as ever");
     run->add_option("--render-backend", request->backend, "auto, x11, xvfb, egl, osmesa or none")
         ->type_name("NAME");

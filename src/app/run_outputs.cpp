@@ -76,30 +76,57 @@ RunOutputs::RunOutputs(RunPaths paths, const PreparedRun& prepared, viz::Backend
                        Terminal& terminal)
     : paths_(std::move(paths)), scenario_(prepared.scenario), scenario_text_(to_toml(prepared.scenario)),
       draws_(backend != viz::Backend::none && !prepared.scenario.render.views.empty()), threads_(threads),
-      terminal_(terminal),
-      table_(paths_.melt_pool_table(), prepared.run.simulation.parameters.isotherms, prepared.resumed_at),
-      pipeline_(
-          file_options(paths_, scenario_.output), render_options(paths_, scenario_.render), backend,
-          backlog_policy(scenario_.render), [this](const std::string& text) { terminal_.warn(text); },
-          [this](const std::string& text) { terminal_.note(text); }),
-      steps_at_start_(prepared.run.simulation.step) {
-    if (prepared.resumed_at) {
-        pipeline_.resume_at(*prepared.resumed_at);
-        drop_checkpoints_after(paths_, prepared.run.simulation.step);
-    }
+      terminal_(terminal), backend_(backend), steps_at_start_(prepared.run.simulation.step) {
+    open_files(prepared.run, prepared.resumed_at);
     write_file_atomically(paths_.scenario(), scenario_text_);
     write_summary(prepared.run, "running", "");
+}
+
+void RunOutputs::open_files(const Run& run, std::optional<double> resume_at) {
+    table_.emplace(paths_.melt_pool_table(), run.simulation.parameters.isotherms, resume_at);
+    pipeline_.emplace(
+        file_options(paths_, scenario_.output), render_options(paths_, scenario_.render), backend_,
+        backlog_policy(scenario_.render), [this](const std::string& text) { terminal_.warn(text); },
+        [this](const std::string& text) { terminal_.note(text); });
+    if (!resume_at)
+        return;
+    pipeline_->resume_at(*resume_at);
+    drop_checkpoints_after(paths_, run.simulation.step);
+}
+
+void RunOutputs::set_render(const RenderSettings& settings) {
+    pipeline_->set_views(settings.views);
+    pipeline_->set_field(settings.field);
+    pipeline_->set_color_range(settings.color_range);
+    pipeline_->set_colormap(settings.colormap);
+    pipeline_->set_background(settings.background == "light" ? viz::Background::light : viz::Background::dark);
+}
+
+void RunOutputs::write_picture(const Run& run, const std::string& view, const std::filesystem::path& png) {
+    pipeline_->write_image(
+        std::make_shared<const Snapshot>(take_snapshot(run.simulation, ParticleSelection::none)), view, png);
+}
+
+void RunOutputs::restored(const Run& run) {
+    const viz::RenderOptions shown = pipeline_->render_options();
+    pipeline_->finish();
+    open_files(run, run.simulation.time);
+    pipeline_->set_views(shown.views);
+    pipeline_->set_field(shown.field);
+    pipeline_->set_color_range(shown.color_range);
+    pipeline_->set_colormap(shown.colormap);
+    pipeline_->set_background(shown.background);
 }
 
 std::vector<Sink> RunOutputs::sinks() {
     const auto pictures_and_files = [this](const Run&, const Due& due,
                                            const std::shared_ptr<const Snapshot>& snapshot) {
-        pipeline_.submit(snapshot, due.picture && draws_, due.output);
+        pipeline_->submit(snapshot, due.picture && draws_, due.output);
     };
     const auto table = [this](const Run&, const Due& due, const std::shared_ptr<const Snapshot>& snapshot) {
         pool_ = pool_size(*snapshot);
         if (due.output)
-            table_.append(*snapshot);
+            table_->append(*snapshot);
     };
     const auto checkpoints = [this](const Run& run, const Due& due, const std::shared_ptr<const Snapshot>&) {
         if (due.checkpoint)
@@ -142,7 +169,7 @@ void RunOutputs::write_summary(const Run& run, const std::string& outcome, const
         summary.particle_steps_per_second = double(steps_made) * double(summary.particles) / run.wall.solver;
     summary.ledger = ledger_entries(simulation.ledger);
     summary.ledger.emplace_back("relative_residual", simulation.ledger.relative_residual());
-    const viz::PipelineStats stats = pipeline_.stats();
+    const viz::PipelineStats stats = pipeline_->stats();
     summary.rendering = {{"frames", double(stats.frames)},         {"files", double(stats.files)},
                          {"waits", double(stats.waits)},           {"wait_seconds", stats.wait_seconds},
                          {"drops", double(stats.drops)},           {"busy_seconds", stats.busy_seconds},
@@ -162,8 +189,8 @@ void RunOutputs::make_movies() {
 }
 
 void RunOutputs::finish(const Run& run, const std::string& outcome, const std::string& message) {
-    pipeline_.finish();
-    const viz::PipelineStats stats = pipeline_.stats();
+    pipeline_->finish();
+    const viz::PipelineStats stats = pipeline_->stats();
     terminal_.note(fmt::format(
         "pictures {}, files {}; the solver waited {} times for them, {:.2f} s; pictures given up {}",
         stats.frames, stats.files, stats.waits, stats.wait_seconds, stats.drops));

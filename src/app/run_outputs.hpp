@@ -5,6 +5,7 @@
 #include "terminal.hpp"
 
 #include "meltscope/io/melt_pool_table.hpp"
+#include "meltscope/console/console_state.hpp"
 #include "meltscope/io/run_folder.hpp"
 #include "viz/pipeline.hpp"
 
@@ -29,6 +30,17 @@ class RunOutputs {
     /// The pool's size at the last output, for the progress line; empty if nothing is molten.
     const std::string& pool() const { return pool_; }
 
+    bool draws() const { return draws_; }
+
+    /// What pictures show from the next one on. Throws viz::VizError for what they cannot show.
+    void set_render(const RenderSettings& settings);
+
+    /// Makes one picture now, outside the run's numbering. Throws viz::VizError.
+    void write_picture(const Run& run, const std::string& view, const std::filesystem::path& png);
+
+    /// The run was put back to an earlier state: what lies at or after its time is dropped.
+    void restored(const Run& run);
+
     /// Waits for the pictures, makes the movies and writes run.json for the last time. `message` says why the
     /// run stopped or failed.
     void finish(const Run& run, const std::string& outcome, const std::string& message);
@@ -39,6 +51,7 @@ class RunOutputs {
   private:
     void write_summary(const Run& run, const std::string& outcome, const std::string& message) const;
     void write_checkpoint_of(const Run& run);
+    void open_files(const Run& run, std::optional<double> resume_at);
     void make_movies();
 
     RunPaths paths_;
@@ -47,8 +60,9 @@ class RunOutputs {
     bool draws_;
     int threads_;
     Terminal& terminal_;
-    MeltPoolTable table_;
-    viz::Pipeline pipeline_;
+    viz::Backend backend_;
+    std::optional<MeltPoolTable> table_; ///< always there; made anew when the run is put back
+    std::optional<viz::Pipeline> pipeline_; ///< the same
     std::string pool_;
     std::int64_t steps_at_start_;
     std::optional<std::filesystem::path> last_checkpoint_;

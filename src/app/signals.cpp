@@ -27,6 +27,7 @@ void watch_signals() {
     action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN); // a reader of the output that goes away must not take the run along
 }
 
 int stop_signal() {

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace meltscope {
@@ -96,7 +97,18 @@ void Terminal::clear_progress_line() {
     shown_.clear();
 }
 
+void Terminal::speak_through(std::function<void(const std::string&)> speak) {
+    const std::lock_guard lock(mutex_);
+    clear_progress_line();
+    std::fflush(stdout);
+    speak_ = std::move(speak);
+}
+
 void Terminal::print(std::FILE* stream, const std::string& text) {
+    if (speak_) {
+        speak_(text);
+        return;
+    }
     const std::string progress = shown_;
     clear_progress_line();
     std::fflush(stdout);
@@ -139,7 +151,7 @@ void Terminal::error(const std::string& text) {
 }
 
 bool Terminal::wants_progress() const {
-    return is_terminal_ && volume_ != Volume::quiet && std::chrono::steady_clock::now() >= next_draw_;
+    return is_terminal_ && !speak_ && volume_ != Volume::quiet && std::chrono::steady_clock::now() >= next_draw_;
 }
 
 void Terminal::progress(const Progress& progress) {

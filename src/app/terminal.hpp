@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -40,6 +41,10 @@ class Terminal {
     /// Writes the log to a file from now on; `append` keeps what is in it. Throws std::runtime_error.
     void log_to(const std::filesystem::path& file, bool append);
 
+    /// From now on, what is shown goes through this, whole lines each, and no progress is drawn: for a prompt that owns
+    /// the terminal. Empty: back to the terminal itself.
+    void speak_through(std::function<void(const std::string&)> speak);
+
     /// To standard output and the log. Quiet: to the log alone.
     void say(const std::string& text);
     /// To the log alone. Verbose: to standard output, too.
@@ -66,6 +71,7 @@ class Terminal {
     bool is_terminal_;
     std::mutex mutex_;
     std::shared_ptr<spdlog::logger> log_;
+    std::function<void(const std::string&)> speak_;
     std::string shown_; ///< the progress line on the screen
     std::chrono::steady_clock::time_point next_draw_;
 };

@@ -334,7 +334,7 @@ void Console::apply(Run& run) {
             if (!reply.ok && run.stop_reason)
                 script_error_ = reply.text;
         }
-        if (run.stop_reason)
+        if (run.stop_reason || state_.leaves)
             return;
         replay_due(run);
         reach_goal(run);
@@ -342,7 +342,7 @@ void Console::apply(Run& run) {
         if (!run.stop_reason && (interrupted(run) || do_next_line(run)))
             continue;
         retire_silent_voices(run);
-        if (run.stop_reason)
+        if (run.stop_reason || state_.leaves)
             return;
         if (state_.running || waits_for_nobody(run)) {
             state_.running = true;

@@ -189,9 +189,11 @@ void note_landing(ConsoleState& console, Run& run) {
 void stop(ConsoleState& console, Run& run, const std::string& reason) {
     if (run.stop_reason)
         return;
-    run.stop_reason = reason;
-    if (at_end_of_run(run))
+    if (at_end_of_run(run)) {
+        console.leaves = true;
         return;
+    }
+    run.stop_reason = reason;
     try {
         note(console, run, "quit", false);
     } catch (const CommandError&) {

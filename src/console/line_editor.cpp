@@ -249,6 +249,10 @@ class LineEditor::Worker {
         el_set(editor_, EL_BIND, "^D", "meltscope-end", nullptr);
         el_set(editor_, EL_BIND, "^R", "em-inc-search-prev", nullptr);
         el_set(editor_, EL_BIND, "^W", "ed-delete-prev-word", nullptr);
+        // Keys come in their order: Ctrl-C as a key, not as a signal that overtakes what was typed before it.
+        el_set(editor_, EL_SETTY, "-d", "-isig", nullptr);
+        el_set(editor_, EL_ADDFN, "meltscope-suspend", "suspend the program", &suspend);
+        el_set(editor_, EL_BIND, "^Z", "meltscope-suspend", nullptr);
         load_history();
         el_set(editor_, EL_HIST, history, history_);
         while (!ending_) {
@@ -399,6 +403,13 @@ class LineEditor::Worker {
             el_deletestr(editor, 1);
         }
         return CC_REFRESH;
+    }
+
+    static unsigned char suspend(EditLine* editor, int) {
+        el_set(editor, EL_PREP_TERM, 0);
+        kill(0, SIGTSTP);
+        el_set(editor, EL_PREP_TERM, 1);
+        return CC_REDISPLAY;
     }
 
     static unsigned char complete(EditLine* editor, int) {

@@ -75,9 +75,8 @@ std::string do_status(Call& call) {
         "{} at {}", call.console.running && !at_end_of_run(call.run) ? "running" : "paused", now(call.run));
     if (s.step > 0)
         text += fmt::format(", dt = {} ({})", shown(s.dt, "s"), name_of(s.limit));
-    text += fmt::format("; ends at {}\n{} particles, {} nodes, hottest node {}",
-                        shown(s.parameters.time.end, "s"), s.particles.count(), s.grid.node_count(),
-                        shown(s.peak_temperature, "K"));
+    text += fmt::format("; ends at {}\n{} particles, {} nodes", shown(s.parameters.time.end, "s"),
+                        s.particles.count(), s.grid.node_count());
     for (const Laser& laser : s.parameters.lasers) {
         double power = 0.0;
         const BeamPosition beam = beam_now(laser, s.time, power);
@@ -201,11 +200,12 @@ std::string do_land(Call& call) {
 
 std::string do_quit(Call& call) {
     call.arguments.done();
-    if (!call.run.stop_reason) {
-        call.run.stop_reason = "quit";
-        if (!at_end_of_run(call.run))
-            call.journal = "quit";
+    if (at_end_of_run(call.run)) {
+        call.console.leaves = true;
+        return {};
     }
+    call.run.stop_reason = "quit";
+    call.journal = "quit";
     return fmt::format("stopping at {}", now(call.run));
 }
 

@@ -66,6 +66,7 @@ struct ConsoleState {
     RenderSettings render;
 
     bool running = true;
+    bool leaves = false; ///< the run is at its end and nobody wants to look at it any more
     Goal goal;
     std::vector<WaitingCommand> waiting; ///< by time, then in the order of their coming
     std::vector<double> landings;        ///< s, times at which a step ends, ascending
@@ -107,7 +108,7 @@ double next_landing(const ConsoleState& console, double time);
 /// Notes in the journal that the next steps are aimed at run.until, if no output has them aimed there anyway.
 void note_landing(ConsoleState& console, Run& run);
 
-/// Stops the run, with a checkpoint, and notes it in the journal unless the run is at its end.
+/// Stops the run, with a checkpoint, and notes it in the journal. A run at its end is left as it is, done.
 void stop(ConsoleState& console, Run& run, const std::string& reason);
 
 } // namespace meltscope

@@ -28,20 +28,15 @@ void print(const std::string& line) {
     std::fputs((line + "\n").c_str(), stdout);
 }
 
-/// The step size in s once something has melted: the start is cold, where diffusion is as a rule slower or
-/// faster.
-double melting_step(const Simulation& cold) {
-    double alpha = 0.0;
-    for (const Material& material : cold.parameters.materials)
-        alpha = std::max(alpha, max_diffusivity(make_equation_of_state(material), cold.coldest_temperature,
-                                                2.0 * material.liquidus));
-    double coldest_alpha = 0.0;
-    for (const EquationOfState& eos : cold.eos)
-        coldest_alpha =
-            std::max(coldest_alpha, max_diffusivity(eos, cold.coldest_temperature, cold.peak_temperature));
+/// The step size in s once something has melted and is twice as hot as its liquidus.
+double melting_step(Simulation& simulation) {
+    const double hottest_at_start = simulation.peak_temperature;
+    for (const EquationOfState& eos : simulation.eos)
+        simulation.peak_temperature = std::max(simulation.peak_temperature, 2.0 * eos.liquidus);
     StepLimit limit;
-    const double dt = largest_step(cold, limit);
-    return limit == StepLimit::diffusion ? dt * coldest_alpha / alpha : dt;
+    const double dt = largest_step(simulation, limit);
+    simulation.peak_temperature = hottest_at_start;
+    return dt;
 }
 
 /// Wall seconds of a step: the median of a few.
@@ -73,9 +68,10 @@ int execute(const CheckRequest& request) {
                       physical_memory() * 1e-9));
     print(fmt::format("# dt         {}, with molten material", in_si(dt, "s")));
     print(fmt::format("# steps      about {:.0f} to t = {}", steps, in_si(end, "s")));
-    print(fmt::format("# time       about {} at {} as measured just now, outputs and pictures not counted",
-                      clock_time(steps * step_seconds),
-                      in_si(double(simulation.particles.count()) / step_seconds, "particle-steps/s")));
+    print(fmt::format(
+        "# time       about {} at {:.1f} M particle-steps/s as measured just now, outputs and pictures "
+        "not counted",
+        clock_time(steps * step_seconds), 1e-6 * double(simulation.particles.count()) / step_seconds));
     return exit_code::done;
 }
 

@@ -64,7 +64,7 @@ void describe_run(const fs::path& folder) {
                       summary.threads == 1 ? "" : "s"));
     print(fmt::format("  {} particles, {} steps, t = {}", summary.particles, summary.steps,
                       in_si(summary.time, "s")));
-    print(fmt::format("  {}", in_si(summary.particle_steps_per_second, "particle-steps/s")));
+    print(fmt::format("  {:.1f} M particle-steps/s", 1e-6 * summary.particle_steps_per_second));
     print_figures("wall seconds", summary.wall_seconds, " s");
     print_figures("ledger", summary.ledger, "");
     print("files");

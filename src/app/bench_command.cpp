@@ -1,3 +1,4 @@
+#include "bench_insitu.hpp"
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "machine_probe.hpp"
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 namespace meltscope {
 namespace {
@@ -25,6 +27,7 @@ struct BenchRequest {
     int threads = 0;
     std::vector<std::string> overrides;
     bool json = false;
+    bool in_situ = false;
 };
 
 constexpr int repetitions = 5;
@@ -106,6 +109,7 @@ struct BenchResult {
     double step_seconds = 0.0; ///< of a whole step
     PhaseSeconds phases;       ///< of a step
     double fma_gflops = 0.0, triad_gb_per_s = 0.0;
+    std::optional<InSituCost> in_situ;
 
     double particle_steps_per_s() const { return double(particles) / step_seconds; }
     double other_seconds() const { return std::max(0.0, step_seconds - phases.sum()); }
@@ -143,24 +147,35 @@ BenchResult measure(const BenchRequest& request) {
     result.phases = {median(parts[0]), median(parts[1]), median(parts[2]), median(parts[3])};
     result.fma_gflops = probe_fma_gflops();
     result.triad_gb_per_s = probe_triad_gb_per_s();
+    if (request.in_situ)
+        result.in_situ = measure_insitu_cost(simulation);
     return result;
 }
 
 std::string as_json(const BenchResult& result) {
-    const nlohmann::ordered_json json = {{"particle_steps_per_s", result.particle_steps_per_s()},
-                                         {"fma_gflops", result.fma_gflops},
-                                         {"triad_gb_per_s", result.triad_gb_per_s},
-                                         {"share_of_limit", result.particle_steps_per_s() / result.limit()},
-                                         {"particles", result.particles},
-                                         {"threads", result.threads},
-                                         {"simd_width", lane_count},
-                                         {"seconds",
-                                          {{"step", result.step_seconds},
-                                           {"favre", result.phases.favre},
-                                           {"diffuse", result.phases.diffuse},
-                                           {"deposit", result.other_seconds()},
-                                           {"update", result.phases.update},
-                                           {"g2p", result.phases.g2p}}}};
+    nlohmann::ordered_json json = {{"particle_steps_per_s", result.particle_steps_per_s()},
+                                   {"fma_gflops", result.fma_gflops},
+                                   {"triad_gb_per_s", result.triad_gb_per_s},
+                                   {"share_of_limit", result.particle_steps_per_s() / result.limit()},
+                                   {"particles", result.particles},
+                                   {"threads", result.threads},
+                                   {"simd_width", lane_count},
+                                   {"seconds",
+                                    {{"step", result.step_seconds},
+                                     {"favre", result.phases.favre},
+                                     {"diffuse", result.phases.diffuse},
+                                     {"deposit", result.other_seconds()},
+                                     {"update", result.phases.update},
+                                     {"g2p", result.phases.g2p}}}};
+    if (const auto& cost = result.in_situ)
+        json["insitu"] = {{"steps_between_outputs", cost->steps},
+                          {"seconds_without", cost->without_seconds},
+                          {"seconds_with", cost->with_seconds},
+                          {"ratio", cost->ratio()},
+                          {"frames", cost->frames},
+                          {"files", cost->files},
+                          {"seconds_of_a_frame", cost->render_seconds},
+                          {"seconds_of_files", cost->file_seconds}};
     return json.dump(2) + "\n";
 }
 
@@ -186,6 +201,14 @@ std::string as_text(const BenchResult& result) {
     phase("update", result.phases.update);
     phase("g2p with the next p2g", result.phases.g2p);
     phase("together", result.step_seconds);
+    if (const auto& cost = result.in_situ) {
+        text += fmt::format("Seconds of {} steps, medians of turns\n", cost->steps);
+        line("without output", fmt::format("{:.3f}", cost->without_seconds));
+        line("with pictures and files", fmt::format("{:.3f}", cost->with_seconds));
+        line("ratio", fmt::format("{:.3f}", cost->ratio()));
+        line("one overview picture", fmt::format("{:.3f}", cost->render_seconds));
+        line("one output's data files", fmt::format("{:.3f}", cost->file_seconds));
+    }
     return text;
 }
 
@@ -214,6 +237,8 @@ void add_bench(CLI::App& program, Action& chosen) {
         ->expected(1)
         ->take_all();
     bench->add_flag("--json", request->json, "Print JSON");
+    bench->add_flag("--insitu", request->in_situ,
+                    "Measure also what an overview picture and data files every 50 steps cost");
     bench->footer("Figures are medians of several repetitions; seconds are those of a step.\n"
                   "Example:\n  meltscope bench --particles 500000 --json");
     bench->callback([request, &chosen] { chosen = [request] { return execute(*request); }; });

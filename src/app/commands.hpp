@@ -16,6 +16,8 @@ void add_check(CLI::App& program, Action& chosen);
 void add_bench(CLI::App& program, Action& chosen);
 void add_info(CLI::App& program, Action& chosen);
 void add_movie(CLI::App& program, Action& chosen);
+void add_render(CLI::App& program, Action& chosen);
+void add_report(CLI::App& program, Action& chosen);
 void add_attach(CLI::App& program, Action& chosen);
 
 /// Version, git hash, compiler, SIMD width, VTK and HDF5 versions.

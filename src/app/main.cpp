@@ -106,6 +106,8 @@ int main(int argc, char** argv) {
     add_bench(program, chosen);
     add_info(program, chosen);
     add_movie(program, chosen);
+    add_render(program, chosen);
+    add_report(program, chosen);
     add_attach(program, chosen);
     try {
         program.parse(argc, argv);

@@ -1,6 +1,7 @@
 #include "attach_socket.hpp"
 
 #include "meltscope/console/line_editor.hpp"
+#include "meltscope/console/parameters.hpp"
 
 #include <poll.h>
 
@@ -106,8 +107,8 @@ bool attach(const std::filesystem::path& folder, bool watch) {
     callbacks.end = leave;
     callbacks.complete = [](std::string_view typed) {
         CompletionNames names;
-        for (const char* laser : {"power", "speed", "spot_radius", "absorptivity", "on"})
-            names.parameters.push_back(fmt::format("laser.{}", laser));
+        for (const Parameter& parameter : parameters_of({Laser{}}))
+            names.parameters.push_back(parameter.name);
         return completions(typed, names);
     };
     LineEditor editor("meltscope> ", history_file(), std::move(callbacks));

@@ -27,15 +27,27 @@ double explicit_limit(const Simulation& s, double alpha) {
 
 void find_extreme_temperatures(Simulation& s) {
     double hottest = 0.0, coldest = std::numeric_limits<double>::infinity();
+    std::int64_t first_bad = s.grid.size; // a comparison with a value that is not a number says nothing
     const Grid& grid = s.grid;
-#pragma omp parallel for schedule(static) reduction(max : hottest) reduction(min : coldest)
+#pragma omp parallel for schedule(static) reduction(max : hottest) reduction(min : coldest, first_bad)
     for (std::int64_t k = 0; k <= grid.cells[2]; ++k)
         for (std::int64_t j = 0; j <= grid.cells[1]; ++j)
             for (std::int64_t at = grid.index(0, j, k); at <= grid.index(grid.cells[0], j, k); ++at)
                 if (s.nodes.mass[at] > 0.0) {
                     hottest = std::max(hottest, s.nodes.temperature[at]);
                     coldest = std::min(coldest, s.nodes.temperature[at]);
+                    if (!std::isfinite(s.nodes.temperature[at]))
+                        first_bad = std::min(first_bad, at);
                 }
+    if (first_bad < grid.size) {
+        const Vec3 place =
+            grid.position(first_bad % grid.stride_y - 1, first_bad % grid.stride_z / grid.stride_y - 1,
+                          first_bad / grid.stride_z - 1);
+        throw std::runtime_error(fmt::format("the temperature at ({:.6g}, {:.6g}, {:.6g}) m is not a number "
+                                             "after step {}, t = {:.6g} s; a smaller "
+                                             "time.cfl may help",
+                                             place.x(), place.y(), place.z(), s.step, s.time));
+    }
     s.peak_temperature = hottest;
     s.coldest_temperature = coldest;
 }
@@ -43,8 +55,15 @@ void find_extreme_temperatures(Simulation& s) {
 double max_diffusivity(const Simulation& s) {
     const double coldest =
         std::max(0.0, std::floor(s.coldest_temperature / temperature_rounding) * temperature_rounding);
-    const double hottest =
-        (std::ceil(s.peak_temperature / temperature_rounding) + 1.0) * temperature_rounding;
+    // Under a laser the plate will soon melt: the first step must not be one for a cold plate.
+    double expected = s.peak_temperature;
+    for (const Laser& laser : s.parameters.lasers) {
+        double power = 0.0;
+        beam_now(laser, s.time, power);
+        for (const EquationOfState& eos : s.eos)
+            expected = power > 0.0 ? std::max(expected, eos.liquidus) : expected;
+    }
+    const double hottest = (std::ceil(expected / temperature_rounding) + 1.0) * temperature_rounding;
     double alpha = 0.0;
     for (const EquationOfState& eos : s.eos)
         alpha = std::max(alpha, max_diffusivity(eos, coldest, hottest));
@@ -273,14 +292,10 @@ void advance(Simulation& s, double target) {
     s.ledger.conducted_out -=
         update_grid_energy(s.grid, s.particles, s.eos, s.parameters.boundary, options, dt, s.nodes); // 6
     grid_to_particles_to_grid(s.grid, options, s.particles, s.nodes); // 7, and 3 of the next step
-    find_node_state(s);                                               // 4 of the next step
-
     s.time = steps_left == 1.0 ? target : s.time + dt;
     s.dt = dt;
     ++s.step;
-    if (!std::isfinite(s.peak_temperature) || !std::isfinite(s.coldest_temperature))
-        throw std::runtime_error(
-            fmt::format("step {} at t = {} s gave a temperature that is not a number", s.step, s.time));
+    find_node_state(s); // 4 of the next step
 }
 
 void update_geometry(Simulation& s) {

@@ -25,6 +25,17 @@ inline double flux_profile(double x, double flux, double conductivity, double al
             x * std::erfc(x / (2.0 * length)));
 }
 
+/// Rise in K at x (m) below the surface of a half space that takes the flux q (W/m^2) since t = 0 and loses
+/// h (W/m^2/K) times its surface's own rise, 2.7 (convection from a medium at q/h):
+/// (q/h) [erfc(x/(2 l)) - exp(h x/k + h^2 l^2/k^2) erfc(x/(2 l) + h l/k)], l = sqrt(alpha t).
+inline double flux_with_loss_profile(double x, double flux, double loss, double conductivity, double alpha,
+                                     double t) {
+    const double length = std::sqrt(alpha * t), biot = loss * length / conductivity;
+    return flux / loss *
+           (std::erfc(x / (2.0 * length)) - std::exp(loss * x / conductivity + biot * biot) *
+                                                std::erfc(x / (2.0 * length) + biot));
+}
+
 /// Temperature in K at the plane where two half spaces met at t = 0, each at a temperature of its own, 2.15:
 /// (b_1 T_1 + b_2 T_2)/(b_1 + b_2), effusivity b = sqrt(kappa rho c).
 inline double contact_temperature(double effusivity_1, double t_1, double effusivity_2, double t_2) {

@@ -127,6 +127,12 @@ void describe(const PreparedRun& prepared, const std::filesystem::path& folder, 
                              prepared.scenario.title.empty() ? "run" : prepared.scenario.title,
                              simulation.particles.count(), simulation.grid.node_count(), threads,
                              threads == 1 ? "" : "s", folder.string()));
+    if (simulation.exchange) {
+        const ExchangeCost& cost = simulation.exchange->cost;
+        terminal.note(
+            fmt::format("radiative exchange: {} patches, {} factors, {:.1f} MB, {} rays in {:.2f} s",
+                        cost.patches, cost.factors, double(cost.bytes) / 1e6, cost.rays, cost.seconds));
+    }
 }
 
 void print_ledger(const Ledger& ledger, Terminal& terminal) {

@@ -2,7 +2,10 @@
 
 #include "viz/process.hpp"
 
+#include <unistd.h>
+
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 
@@ -24,7 +27,17 @@ int ignore_protocol_error(::Display*, XErrorEvent*) {
 int ignore_connection_loss(::Display*) {
     return 0;
 }
+/// Ends the process without the destructors of the GL libraries: they would wait for ever for the lock of a
+/// connection that was lost while a call held it. Streams are written out first.
+void end_without_closing_displays(int status, void*) {
+    std::fflush(nullptr);
+    _exit(status);
+}
+
 void note_connection_loss(::Display*, void* lost) {
+    if (!*static_cast<bool*>(lost)) {
+        on_exit(end_without_closing_displays, nullptr);
+    }
     *static_cast<bool*>(lost) = true;
 }
 

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
+#include <set>
 #include <system_error>
 
 #include <vtkErrorCode.h>
@@ -138,6 +139,8 @@ struct FrameRenderer::Impl {
         }
     }
 
+    std::set<std::string> drawn; ///< views that have been drawn before
+
     View& view(const std::string& name) {
         const auto found = views.find(name);
         if (found != views.end()) {
@@ -226,6 +229,10 @@ vtkSmartPointer<vtkImageData> FrameRenderer::render(const Instant& instant,
     draw_caption(impl.canvas, picture, layout.caption);
     draw_color_bar(impl.canvas, picture, layout.color_bar);
 
+    // Charts settle their margins while they are drawn: the first picture of a view is drawn twice.
+    if (impl.drawn.insert(view_name).second) {
+        impl.window->Render();
+    }
     impl.window->Render();
     vtkNew<vtkWindowToImageFilter> grab;
     grab->SetInput(impl.window);

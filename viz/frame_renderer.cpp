@@ -183,6 +183,10 @@ vtkSmartPointer<vtkImageData> FrameRenderer::render(const Instant& instant,
                                                     const RenderOptions& options,
                                                     const std::string& view_name) {
     Impl& impl = *impl_;
+    // Charts settle their margins while they are drawn: the first picture of a view is made twice.
+    if (impl.drawn.insert(view_name).second) {
+        render(instant, history, options, view_name);
+    }
     const Snapshot& snapshot = *instant.snapshot;
     const Theme& colors = theme(options.background);
 
@@ -229,10 +233,6 @@ vtkSmartPointer<vtkImageData> FrameRenderer::render(const Instant& instant,
     draw_caption(impl.canvas, picture, layout.caption);
     draw_color_bar(impl.canvas, picture, layout.color_bar);
 
-    // Charts settle their margins while they are drawn: the first picture of a view is drawn twice.
-    if (impl.drawn.insert(view_name).second) {
-        impl.window->Render();
-    }
     impl.window->Render();
     vtkNew<vtkWindowToImageFilter> grab;
     grab->SetInput(impl.window);

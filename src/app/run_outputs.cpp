@@ -99,7 +99,8 @@ void RunOutputs::set_render(const RenderSettings& settings) {
     pipeline_->set_field(settings.field);
     pipeline_->set_color_range(settings.color_range);
     pipeline_->set_colormap(settings.colormap);
-    pipeline_->set_background(settings.background == "light" ? viz::Background::light : viz::Background::dark);
+    pipeline_->set_background(settings.background == "light" ? viz::Background::light
+                                                             : viz::Background::dark);
 }
 
 void RunOutputs::write_picture(const Run& run, const std::string& view, const std::filesystem::path& png) {

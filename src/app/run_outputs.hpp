@@ -4,8 +4,8 @@
 #include "stopwatch.hpp"
 #include "terminal.hpp"
 
-#include "meltscope/io/melt_pool_table.hpp"
 #include "meltscope/console/console_state.hpp"
+#include "meltscope/io/melt_pool_table.hpp"
 #include "meltscope/io/run_folder.hpp"
 #include "viz/pipeline.hpp"
 
@@ -61,7 +61,7 @@ class RunOutputs {
     int threads_;
     Terminal& terminal_;
     viz::Backend backend_;
-    std::optional<MeltPoolTable> table_; ///< always there; made anew when the run is put back
+    std::optional<MeltPoolTable> table_;    ///< always there; made anew when the run is put back
     std::optional<viz::Pipeline> pipeline_; ///< the same
     std::string pool_;
     std::int64_t steps_at_start_;

@@ -151,7 +151,8 @@ void Terminal::error(const std::string& text) {
 }
 
 bool Terminal::wants_progress() const {
-    return is_terminal_ && !speak_ && volume_ != Volume::quiet && std::chrono::steady_clock::now() >= next_draw_;
+    return is_terminal_ && !speak_ && volume_ != Volume::quiet &&
+           std::chrono::steady_clock::now() >= next_draw_;
 }
 
 void Terminal::progress(const Progress& progress) {

@@ -41,8 +41,8 @@ class Terminal {
     /// Writes the log to a file from now on; `append` keeps what is in it. Throws std::runtime_error.
     void log_to(const std::filesystem::path& file, bool append);
 
-    /// From now on, what is shown goes through this, whole lines each, and no progress is drawn: for a prompt that owns
-    /// the terminal. Empty: back to the terminal itself.
+    /// From now on, what is shown goes through this, whole lines each, and no progress is drawn: for a prompt
+    /// that owns the terminal. Empty: back to the terminal itself.
     void speak_through(std::function<void(const std::string&)> speak);
 
     /// To standard output and the log. Quiet: to the log alone.

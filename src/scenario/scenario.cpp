@@ -22,9 +22,10 @@ std::vector<std::string> scenario_notes(const Scenario& scenario) {
     std::vector<std::string> notes;
     for (const Material& material : scenario.materials) {
         if (material.heat_capacity.powder) {
-            notes.push_back("material \"" + material.name +
-                            "\": heat_capacity.powder is not used; a kilogram of powder holds as much heat as a "
-                            "kilogram of the bulk, so that melting keeps the energy");
+            notes.push_back(
+                "material \"" + material.name +
+                "\": heat_capacity.powder is not used; a kilogram of powder holds as much heat as a "
+                "kilogram of the bulk, so that melting keeps the energy");
         }
     }
     return notes;

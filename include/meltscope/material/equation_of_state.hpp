@@ -109,8 +109,8 @@ struct EquationOfState {
 /// Throws std::invalid_argument if solidus >= liquidus or a heat capacity is not positive over 0 .. 6000 K.
 EquationOfState make_equation_of_state(const Material& material);
 
-/// Largest kappa/(rho c) in m^2/s over [coldest, hottest] in K, outside and inside the mushy range, of the bulk and, if
-/// the material has one, the powder's kappa with the bulk's rho.
+/// Largest kappa/(rho c) in m^2/s over [coldest, hottest] in K, outside and inside the mushy range, of the
+/// bulk and, if the material has one, the powder's kappa with the bulk's rho.
 double max_diffusivity(const EquationOfState& eos, double coldest, double hottest);
 
 } // namespace meltscope

@@ -69,9 +69,9 @@ struct Simulation {
     std::vector<EquationOfState> eos;
     double least_packing = 1.0; ///< density of the lightest homogenised powder by that of its bulk
     FreeSurface surface;
-    std::vector<LightMap> light_maps; ///< one a laser
-    std::vector<LossLaw> loss_laws;   ///< one a material; empty while no loss is on
-    LossElements loss_elements;       ///< set while a loss is on
+    std::vector<LightMap> light_maps;          ///< one a laser
+    std::vector<LossLaw> loss_laws;            ///< one a material; empty while no loss is on
+    LossElements loss_elements;                ///< set while a loss is on
     std::optional<RadiativeExchange> exchange; ///< set while reabsorption is on
 
     // Of the last step, for the log and the tables.
@@ -103,8 +103,8 @@ void advance(Simulation& simulation, double target);
 /// options were changed.
 void update_geometry(Simulation& simulation);
 
-/// Takes over changed losses: radiation, evaporation, reabsorption, convection, ambient. Throws std::invalid_argument if
-/// a material lacks what a loss needs; the simulation is then as before.
+/// Takes over changed losses: radiation, evaporation, reabsorption, convection, ambient. Throws
+/// std::invalid_argument if a material lacks what a loss needs; the simulation is then as before.
 void update_losses(Simulation& simulation);
 
 /// Makes the nodes anew after face conditions were changed.

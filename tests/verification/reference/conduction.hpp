@@ -32,8 +32,8 @@ inline double flux_with_loss_profile(double x, double flux, double loss, double 
                                      double t) {
     const double length = std::sqrt(alpha * t), biot = loss * length / conductivity;
     return flux / loss *
-           (std::erfc(x / (2.0 * length)) - std::exp(loss * x / conductivity + biot * biot) *
-                                                std::erfc(x / (2.0 * length) + biot));
+           (std::erfc(x / (2.0 * length)) -
+            std::exp(loss * x / conductivity + biot * biot) * std::erfc(x / (2.0 * length) + biot));
 }
 
 /// Temperature in K at the plane where two half spaces met at t = 0, each at a temperature of its own, 2.15:

@@ -2,9 +2,18 @@
 add_library(meltscope_compilation INTERFACE)
 target_compile_features(meltscope_compilation INTERFACE cxx_std_20)
 target_compile_options(meltscope_compilation INTERFACE -Wall -Wextra -Wshadow -Wno-psabi
-                       -Wno-maybe-uninitialized) # GCC 12 sees it in its own AVX-512 headers
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>) # GCC 12 sees it in its own AVX-512 headers
 if(MELTSCOPE_WARNINGS_AS_ERRORS)
   target_compile_options(meltscope_compilation INTERFACE -Werror)
+endif()
+if(MELTSCOPE_BUILD_FUZZERS)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "The fuzzers need Clang (libFuzzer): cmake --preset fuzz, or -DCMAKE_CXX_COMPILER=clang++")
+  endif()
+  # Undefined behaviour ends the process, so that it is a finding and not a line in a log.
+  set(_fuzz -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(meltscope_compilation INTERFACE ${_fuzz})
+  target_link_options(meltscope_compilation INTERFACE ${_fuzz})
 endif()
 if(MELTSCOPE_SANITIZE)
   target_compile_options(meltscope_compilation INTERFACE -fsanitize=${MELTSCOPE_SANITIZE} -fno-omit-frame-pointer)

@@ -1,4 +1,5 @@
 #include "attach_socket.hpp"
+#include "wake_pipe.hpp"
 
 #include <poll.h>
 
@@ -47,19 +48,16 @@ class AttachServer::Worker {
         // The mode of the socket becomes that of the file, so that it is never open to others.
         if (!listening_ || fchmod(listening_.get(), 0600) != 0 ||
             bind(listening_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-            fchmodat(folder_.get(), socket_name, 0600, 0) != 0 || listen(listening_.get(), 8) != 0 ||
-            pipe2(wake_.data(), O_CLOEXEC | O_NONBLOCK) != 0)
+            fchmodat(folder_.get(), socket_name, 0600, 0) != 0 || listen(listening_.get(), 8) != 0)
             throw AttachError(fmt::format("{}: {}", (folder / socket_name).string(), std::strerror(errno)));
         thread_ = std::thread([this] { serve(); });
     }
 
     ~Worker() {
         ending_ = true;
-        wake_up();
+        pipe_.wake();
         thread_.join();
         unlinkat(folder_.get(), socket_name, 0);
-        ::close(wake_[0]);
-        ::close(wake_[1]);
     }
 
   private:
@@ -86,15 +84,9 @@ class AttachServer::Worker {
         bool done = false; ///< to be let go of
     };
 
-    void wake_up() {
-        if (write(wake_[1], "", 1) < 0) {
-            // a full pipe wakes just as well
-        }
-    }
-
     void serve() {
         while (!ending_) {
-            std::vector<pollfd> watched{{listening_.get(), POLLIN, 0}, {wake_[0], POLLIN, 0}};
+            std::vector<pollfd> watched{{listening_.get(), POLLIN, 0}, {pipe_.descriptor(), POLLIN, 0}};
             for (const Client& client : clients_) {
                 const std::lock_guard lock(client.outbox->mutex);
                 const short writes = client.outbox->bytes.empty() ? short(0) : short(POLLOUT);
@@ -102,9 +94,7 @@ class AttachServer::Worker {
             }
             if (poll(watched.data(), watched.size(), -1) < 0 && errno != EINTR)
                 break;
-            std::array<char, 256> sink;
-            while (read(wake_[0], sink.data(), sink.size()) > 0) {
-            }
+            pipe_.drain();
             for (std::size_t n = 2; n < watched.size(); ++n) {
                 if (watched[n].revents & (POLLIN | POLLHUP | POLLERR))
                     receive(clients_[n - 2]);
@@ -198,7 +188,7 @@ class AttachServer::Worker {
                 outbox->put(lettered('n', reply.text));
             else if (!line.empty() || script)
                 outbox->put(lettered('r', reply.text) + (reply.ok ? "d\n" : "f\n"));
-            wake_up();
+            pipe_.wake();
         };
         client.id = console_.open(std::move(speaker));
     }
@@ -230,7 +220,7 @@ class AttachServer::Worker {
 
     Console& console_;
     Descriptor folder_, listening_;
-    std::array<int, 2> wake_{-1, -1};
+    WakePipe pipe_;
     std::atomic<bool> ending_{false};
     std::vector<Client> clients_; ///< of the server's thread
     std::thread thread_;

@@ -69,16 +69,16 @@ void take_up(ConsoleState& console, Run& run, const JournalEntry& entry) {
             console.waiting.erase(done);
         return;
     }
-    const std::vector<std::string> words = split_words(entry.command);
-    const bool picture_setting = words.size() > 2 && words[0] == "set" && words[1].starts_with("render.") &&
-                                 words[1] != "render.every";
-    if (words[0] != "at" && words[0] != "land" && !picture_setting)
-        return;
     const double now = std::exchange(run.simulation.time, entry.time); // times are judged as they were then
-    Arguments arguments({words.begin() + 1, words.end()}, console.units);
-    Call call{console, run, arguments, {}, false};
     try {
-        find_command(words[0]).handler(call);
+        const std::vector<std::string> words = split_words(entry.command);
+        const bool picture_setting = words.size() > 2 && words[0] == "set" &&
+                                     words[1].starts_with("render.") && words[1] != "render.every";
+        if (!words.empty() && (words[0] == "at" || words[0] == "land" || picture_setting)) {
+            Arguments arguments({words.begin() + 1, words.end()}, console.units);
+            Call call{console, run, arguments, {}, false};
+            find_command(words[0]).handler(call);
+        }
     } catch (const std::exception& error) {
         run.simulation.time = now;
         throw JournalError(fmt::format("the journal of the run: \"{}\": {}", entry.command, error.what()));

@@ -29,7 +29,7 @@ bool parse_entry(std::string_view text, JournalEntry& entry) {
     const bool form = take(text, "at step ") && take_number(text, entry.step) && take(text, " t=") &&
                       take_number(text, entry.time) && take(text, ": ");
     entry.command = text;
-    return form && !text.empty() && std::isfinite(entry.time);
+    return form && text.find_first_not_of(" \t") != std::string_view::npos && std::isfinite(entry.time);
 }
 
 } // namespace

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 /// Commands that look at the state, and pictures of it.
 namespace meltscope {
@@ -47,18 +50,42 @@ std::string do_probe(Call& call) {
                        shown(call.run.simulation.time, "s"));
 }
 
+namespace {
+
+std::string size_of(const PoolFigures& pool) {
+    return fmt::format("length {}, width {}, depth {}, volume {:.4g} m^3", shown(pool.length, "m"),
+                       shown(pool.width, "m"), shown(pool.depth, "m"), pool.volume);
+}
+
+/// The pools of one isotherm: one alone without ceremony, several each with its lasers.
+std::string pools_above(const Snapshot& snapshot, double isotherm) {
+    std::vector<SeparatePool> pools;
+    std::copy_if(snapshot.separate_pools.begin(), snapshot.separate_pools.end(), std::back_inserter(pools),
+                 [&](const SeparatePool& pool) { return pool.figures.isotherm == isotherm; });
+    if (pools.empty())
+        return "nothing";
+    if (pools.size() == 1)
+        return size_of(pools.front().figures);
+    std::string text = fmt::format("{} pools", pools.size());
+    for (const SeparatePool& pool : pools) {
+        std::vector<std::string> lasers;
+        for (const int beam : pool.beams)
+            lasers.push_back(snapshot.beams[beam].name);
+        text += fmt::format("\n  {}{}", size_of(pool.figures),
+                            lasers.empty() ? "" : fmt::format(", under {}", fmt::join(lasers, " and ")));
+    }
+    return text;
+}
+
+} // namespace
+
 std::string do_pool(Call& call) {
     call.arguments.done();
     const Snapshot snapshot = take_snapshot(call.run.simulation, ParticleSelection::none);
     std::string text;
-    for (const PoolFigures& pool : snapshot.pools) {
-        text += fmt::format("{}above {:.6g} K: ", text.empty() ? "" : "\n", pool.isotherm);
-        text += pool.volume > 0.0
-                    ? fmt::format("length {}, width {}, depth {}, volume {:.4g} m^3", shown(pool.length, "m"),
-                                  shown(pool.width, "m"), shown(pool.depth, "m"), pool.volume)
-                    : std::string("nothing");
-    }
-    return fmt::format("{}\npeak {:.6g} K (step {}, t = {})", text, snapshot.peak_temperature, snapshot.step,
+    for (const PoolFigures& pool : snapshot.pools)
+        text += fmt::format("above {:.6g} K: {}\n", pool.isotherm, pools_above(snapshot, pool.isotherm));
+    return fmt::format("{}peak {:.6g} K (step {}, t = {})", text, snapshot.peak_temperature, snapshot.step,
                        shown(snapshot.time, "s"));
 }
 
@@ -67,21 +94,8 @@ std::string do_energy(Call& call) {
     balance(call.run.simulation);
     const Ledger& ledger = call.run.simulation.ledger;
     std::string text;
-    const auto line = [&](const char* name, double energy) {
-        if (energy != 0.0)
-            text += fmt::format("{:<28} {:>13.6g} J\n", name, energy);
-    };
-    line("emitted by the lasers", ledger.emitted);
-    line("missed the material", ledger.missed);
-    line("reflected", ledger.reflected);
-    line("absorbed", ledger.absorbed);
-    line("flowed in through faces", ledger.face_flux_in);
-    line("added with particles", ledger.added);
-    line("radiated", ledger.radiated);
-    line("convected", ledger.convected);
-    line("evaporated", ledger.evaporated);
-    line("conducted out", ledger.conducted_out);
-    line("change of what is stored", ledger.stored - ledger.stored_at_start);
+    for (const auto& [words, energy] : in_words(ledger))
+        text += fmt::format("{:<28} {:>13.6g} J\n", words, energy);
     return text + fmt::format("{:<28} {:>13.1e}", "relative residual", ledger.relative_residual());
 }
 

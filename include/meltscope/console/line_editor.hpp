@@ -13,6 +13,8 @@ namespace meltscope {
 /// ~/.local/state. Empty without a home.
 std::filesystem::path history_file();
 
+class Prompt;
+
 /// A prompt on standard input and output, on a thread of its own, so that typing never waits for the solver.
 ///
 /// On a terminal lines are edited with libedit, and print() puts text above the line being typed. On a dumb
@@ -21,7 +23,7 @@ class LineEditor {
   public:
     struct Callbacks {
         std::function<void(const std::string& line)> line;
-        std::function<void()> interrupt; ///< Ctrl-C on an empty line; on terminals that are edited only
+        std::function<void()> interrupt; ///< Ctrl-C at a terminal; on an empty line if lines are edited
         std::function<void()> end;       ///< end of input: Ctrl-D on an empty line, or the end of a pipe
         /// The words that may stand at the end of the text before the cursor; may be empty.
         std::function<std::vector<std::string>(std::string_view)> complete;
@@ -42,8 +44,7 @@ class LineEditor {
     bool edits() const;
 
   private:
-    class Worker;
-    std::unique_ptr<Worker> worker_;
+    std::unique_ptr<Prompt> prompt_;
 };
 
 } // namespace meltscope

@@ -125,7 +125,9 @@ void Console::replay_due(Run& run) {
                 fmt::format("{}: the run departs from the journal: step {} ended at t = {} s, not at {} s",
                             place, simulation.step, exact(simulation.time), exact(entry.time)));
         ++replayed_;
+        state_.from_journal = true;
         const Reply reply = execute(state_, run, entry.command);
+        state_.from_journal = false;
         if (!reply.ok)
             throw JournalError(fmt::format("{}: {}: {}", place, entry.command, reply.text));
         tell_all(fmt::format("{}: {}{}{}", place, entry.command, reply.text.empty() ? "" : ": ", reply.text));

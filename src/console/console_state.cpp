@@ -74,15 +74,18 @@ void take_up(ConsoleState& console, Run& run, const JournalEntry& entry) {
         const std::vector<std::string> words = split_words(entry.command);
         const bool picture_setting = words.size() > 2 && words[0] == "set" &&
                                      words[1].starts_with("render.") && words[1] != "render.every";
+        console.from_journal = true;
         if (!words.empty() && (words[0] == "at" || words[0] == "land" || picture_setting)) {
             Arguments arguments({words.begin() + 1, words.end()}, console.units);
             Call call{console, run, arguments, {}, false};
             find_command(words[0]).handler(call);
         }
     } catch (const std::exception& error) {
+        console.from_journal = false;
         run.simulation.time = now;
         throw JournalError(fmt::format("the journal of the run: \"{}\": {}", entry.command, error.what()));
     }
+    console.from_journal = false;
     run.simulation.time = now;
 }
 
@@ -147,7 +150,7 @@ std::vector<Reply> execute_due(ConsoleState& console, Run& run) {
         console.waiting.erase(console.waiting.begin());
         Reply reply;
         try {
-            note(console, run, due.command, true);
+            note(console, run, without_file_to_write(due.command), true);
             reply = carry_out(console, run, due.command, true);
         } catch (const std::exception& error) {
             reply = {false, error.what(), false};

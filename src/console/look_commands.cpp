@@ -20,7 +20,7 @@ std::string do_snapshot(Call& call) {
         return fmt::format("output and pictures of step {}, t = {}", run.simulation.step,
                            shown(run.simulation.time, "s"));
     }
-    const std::filesystem::path file = call.arguments.word("the file");
+    const std::filesystem::path file = file_to_write(call);
     const std::string view = call.arguments.empty() ? call.console.render.views.front()
                                                     : call.arguments.choice("the view", view_names());
     call.arguments.done();

@@ -66,7 +66,24 @@ bool may_wait(const std::string& name) {
     return true;
 }
 
+bool writes_file(const std::string& name) {
+    return name == "save" || name == "snapshot";
+}
+
 } // namespace
+
+std::string without_file_to_write(const std::string& line) {
+    const std::vector<std::string> words = split_words(line);
+    return !words.empty() && writes_file(words[0]) ? words[0] : line;
+}
+
+std::filesystem::path file_to_write(Call& call) {
+    if (call.arguments.empty())
+        return {};
+    if (call.console.from_journal)
+        throw CommandError("a journal names no file to write");
+    return call.arguments.word("the file");
+}
 
 std::string do_status(Call& call) {
     call.arguments.done();
@@ -171,6 +188,8 @@ std::string do_at(Call& call) {
         throw CommandError(fmt::format("`{}` cannot wait for a time", command.name));
     const std::string rest = arguments.rest();
     std::string line = command.name + (rest.empty() ? "" : " " + rest);
+    if (call.console.from_journal && line != without_file_to_write(line))
+        throw CommandError("a journal names no file to write");
     if (command.name == "path")
         line = with_path_file_inlined(line);
     if (time < run.simulation.time && !same_instant(time, run.simulation.time))
@@ -179,7 +198,7 @@ std::string do_at(Call& call) {
     const auto place = std::upper_bound(waiting.begin(), waiting.end(), time,
                                         [](double t, const WaitingCommand& w) { return t < w.time; });
     waiting.insert(place, {time, line, call.console.must_succeed});
-    call.journal = fmt::format("at {} s {}", exact(time), line);
+    call.journal = fmt::format("at {} s {}", exact(time), without_file_to_write(line));
     const bool never_comes = time > run.simulation.parameters.time.end;
     return fmt::format("waits for {}: {}{}", shown(time, "s"), line,
                        never_comes ? " (the run ends before)" : "");

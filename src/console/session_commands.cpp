@@ -21,7 +21,7 @@ std::string do_record(Call& call) {
         recording.clear();
         return text;
     }
-    const std::filesystem::path file = call.arguments.word("the file");
+    const std::filesystem::path file = file_to_write(call);
     call.arguments.done();
     if (std::filesystem::exists(file))
         throw CommandError(fmt::format("{} is there already", file.string()));
@@ -44,8 +44,11 @@ std::string do_history(Call& call) {
 std::string do_source(Call& call) {
     const std::string file = call.arguments.word("the file");
     call.arguments.done();
+    if (call.console.from_journal)
+        throw CommandError("a journal reads no other file");
+    std::error_code ignored;
     std::ifstream stream(file);
-    if (!stream || std::filesystem::is_directory(file))
+    if (!std::filesystem::is_regular_file(file, ignored) || !stream) // a device or a pipe may never end
         throw CommandError(fmt::format("{} cannot be read", file));
     std::vector<std::string> lines;
     for (std::string line; std::getline(stream, line);)

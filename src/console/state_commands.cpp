@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 /// Commands that keep, put back or add to the state of the run.
 namespace meltscope {
@@ -68,12 +69,32 @@ std::string written(const Call& call, const PowderLayer& layer) {
                        as_word(material), exact(layer.temperature), exact(layer.packing), grains);
 }
 
+/// As take_up_journal, from the pictures' settings at the start. What waits and what pictures show stays as
+/// it is if the journal cannot be taken up.
+void take_up_restored_journal(ConsoleState& console, Run& run) {
+    const auto waiting = console.waiting;
+    const auto landings = console.landings;
+    const RenderSettings render = std::exchange(console.render, console.host.render);
+    const auto show = [&] {
+        if (console.host.set_render)
+            console.host.set_render(console.render);
+    };
+    try {
+        take_up_journal(console, run);
+        show();
+    } catch (...) {
+        console.waiting = waiting;
+        console.landings = landings;
+        console.render = render;
+        show();
+        throw;
+    }
+}
+
 } // namespace
 
 std::string do_save(Call& call) {
-    std::filesystem::path file;
-    if (!call.arguments.empty())
-        file = call.arguments.word("the file");
+    std::filesystem::path file = file_to_write(call);
     call.arguments.done();
     if (file.empty()) {
         if (call.console.host.folder.empty())
@@ -92,26 +113,30 @@ std::string do_restore(Call& call) {
     call.arguments.done();
     ConsoleState& console = call.console;
     Run& run = call.run;
+    if (console.from_journal)
+        throw CommandError("a journal puts no checkpoint back");
     const CheckpointData data = read_checkpoint(file);
     if (data.scenario != console.host.scenario)
         throw CommandError(
             fmt::format("{} was made under another scenario; `meltscope run --restart` takes it up", file));
+    // The whole of it is made before anything of the run is given up.
     RunParameters parameters = console.host.parameters;
-    OutputSchedule schedule = run.schedule;
-    apply_steering(read_steering(data.steering), parameters, schedule);
-    parse_journal(data.journal, file); // so that nothing has changed yet if it cannot be read
-    run.simulation =
+    Run back;
+    back.schedule = run.schedule;
+    apply_steering(read_steering(data.steering), parameters, back.schedule);
+    back.simulation =
         simulation_from(data, std::move(parameters), run.simulation.grid, run.simulation.particles.lattice);
-    run.schedule = schedule;
-    run.journal = data.journal;
-    run.layers_laid = layers_laid_by(data);
+    back.layers_laid = layers_laid_by(data);
     if (run.solidification)
-        run.solidification = solidification_from(data, run.simulation);
+        back.solidification = solidification_from(data, back.simulation);
+    back.journal = data.journal;
+    take_up_restored_journal(console, back);
+    run.simulation = std::move(back.simulation);
+    run.schedule = back.schedule;
+    run.journal = std::move(back.journal);
+    run.layers_laid = back.layers_laid;
+    run.solidification = std::move(back.solidification);
     console.goal = {console.goal.number + 1, std::nullopt, std::nullopt};
-    console.render = console.host.render;
-    if (console.host.set_render)
-        console.host.set_render(console.render);
-    take_up_journal(console, run);
     if (console.host.restored)
         console.host.restored(run);
     return fmt::format("back at step {}, t = {}; the journal is that of the checkpoint", run.simulation.step,

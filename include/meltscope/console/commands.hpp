@@ -62,6 +62,13 @@ struct CompletionNames {
 /// slash.
 std::vector<std::string> completions(std::string_view line, const CompletionNames& names);
 
+/// A waiting command as a journal keeps it: `save` and `snapshot` without their file, since a journal or a
+/// checkpoint from elsewhere must not say what is written where. Other lines as they are.
+std::string without_file_to_write(const std::string& line);
+
+/// The file that a command is to write, if one is named. Throws CommandError if the command is a journal's.
+std::filesystem::path file_to_write(Call& call);
+
 /// A `path load` or `path append` with the rows of its file in it, for those that wait; other lines as they
 /// are.
 std::string with_path_file_inlined(const std::string& line);

@@ -76,6 +76,7 @@ struct ConsoleState {
     std::vector<std::string> sourced; ///< lines that the last command wants carried out next
     std::string sourced_from;         ///< the file that they are from
     bool must_succeed = false;        ///< the command is from a script
+    bool from_journal = false;        ///< the command is from a journal
     std::size_t journal_written = 0;  ///< characters of the journal that are in journal.txt
 
     explicit ConsoleState(ConsoleHost host_) : host(std::move(host_)), render(host.render) {}

@@ -20,31 +20,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void print(const std::string& line) {
+void say(const std::string& line) {
     std::fputs((line + "\n").c_str(), stdout);
 }
 
 void print_figures(const char* title, const RunSummary::Figures& figures, const char* unit) {
-    print(title);
+    say(title);
     for (const auto& [name, value] : figures)
-        print(fmt::format("  {:<20} {:.6g}{}", name, value, unit));
+        say(fmt::format("  {:<20} {:.6g}{}", name, value, unit));
 }
 
 void describe_checkpoint(const fs::path& file) {
     const CheckpointData data = read_checkpoint(file);
-    print(fmt::format("checkpoint {} (schema {})", file.string(), data.schema_version));
-    print(fmt::format("  step {}, t = {} ({:.9g} s), dt {}", data.step, in_si(data.time, "s"), data.time,
+    say(fmt::format("checkpoint {} (schema {})", file.string(), data.schema_version));
+    say(fmt::format("  step {}, t = {} ({:.9g} s), dt {}", data.step, in_si(data.time, "s"), data.time,
                       in_si(data.dt, "s")));
-    print(fmt::format("  {} particles", data.particles.id.size()));
+    say(fmt::format("  {} particles", data.particles.id.size()));
     std::map<std::int32_t, std::size_t> by_material;
     for (const std::int32_t material : data.particles.material)
         ++by_material[material];
     for (const auto& [material, count] : by_material)
-        print(fmt::format("    of material {}: {}", material, count));
+        say(fmt::format("    of material {}: {}", material, count));
     for (const auto& array : data.grid)
-        print(fmt::format("  grid array {}: {} (z y x)", array.name, fmt::join(array.dims, " x ")));
+        say(fmt::format("  grid array {}: {} (z y x)", array.name, fmt::join(array.dims, " x ")));
     const auto lines = std::count(data.journal.begin(), data.journal.end(), '\n');
-    print(fmt::format("  scenario {} bytes, journal {} line{}", data.scenario.size(), lines,
+    say(fmt::format("  scenario {} bytes, journal {} line{}", data.scenario.size(), lines,
                       lines == 1 ? "" : "s"));
     print_figures("ledger", data.ledger, " J");
 }
@@ -58,25 +58,25 @@ std::size_t count_files(const fs::path& folder) {
 void describe_run(const fs::path& folder) {
     const RunPaths paths{folder};
     const RunSummary summary = read_run_summary(paths.summary());
-    print(fmt::format("run {}{}", folder.string(), summary.title.empty() ? "" : ": " + summary.title));
-    print(fmt::format("  {}{}", summary.outcome, summary.message.empty() ? "" : ": " + summary.message));
-    print(fmt::format("  meltscope {} ({}), {} thread{}", summary.version, summary.git_hash, summary.threads,
+    say(fmt::format("run {}{}", folder.string(), summary.title.empty() ? "" : ": " + summary.title));
+    say(fmt::format("  {}{}", summary.outcome, summary.message.empty() ? "" : ": " + summary.message));
+    say(fmt::format("  meltscope {} ({}), {} thread{}", summary.version, summary.git_hash, summary.threads,
                       summary.threads == 1 ? "" : "s"));
-    print(fmt::format("  {} particles, {} steps, t = {}", summary.particles, summary.steps,
+    say(fmt::format("  {} particles, {} steps, t = {}", summary.particles, summary.steps,
                       in_si(summary.time, "s")));
-    print(fmt::format("  {:.1f} M particle-steps/s", 1e-6 * summary.particle_steps_per_second));
+    say(fmt::format("  {:.1f} M particle-steps/s", 1e-6 * summary.particle_steps_per_second));
     print_figures("wall seconds", summary.wall_seconds, " s");
     print_figures("ledger", summary.ledger, "");
-    print("files");
+    say("files");
     for (const char* series : {"particles", "surface", "pool", "grid"})
         if (const std::size_t count = count_files(paths.series_folder(series)); count > 0)
-            print(fmt::format("  {:<20} {}", series, count));
-    print(fmt::format("  {:<20} {}", "frames", count_files(paths.frames())));
+            say(fmt::format("  {:<20} {}", series, count));
+    say(fmt::format("  {:<20} {}", "frames", count_files(paths.frames())));
     for (const CheckpointFile& checkpoint : list_checkpoints(paths))
-        print(fmt::format("  checkpoint           {}", checkpoint.path.string()));
+        say(fmt::format("  checkpoint           {}", checkpoint.path.string()));
 }
 
-int execute(const fs::path& path) {
+int describe(const fs::path& path) {
     if (!fs::exists(path))
         throw UsageError(fmt::format("there is no {}", path.string()));
     try {
@@ -102,7 +102,7 @@ void add_info(CLI::App& program, Action& chosen) {
     info->add_option("PATH", *path, "Checkpoint file or run folder")->required();
     info->footer("Examples:\n  meltscope info runs/quick_look\n"
                  "  meltscope info runs/quick_look/checkpoints/step_000000500.h5");
-    info->callback([path, &chosen] { chosen = [path] { return execute(*path); }; });
+    info->callback([path, &chosen] { chosen = [path] { return describe(*path); }; });
 }
 
 } // namespace meltscope

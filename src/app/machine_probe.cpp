@@ -14,7 +14,7 @@
 namespace meltscope {
 namespace {
 
-constexpr int repetitions = 7;
+constexpr int probe_runs = 7;
 constexpr int chains = 12; ///< enough for two units of four cycles each, few enough for sixteen registers
 
 /// Runs the chains `rounds` times; what they come to must be used, or the compiler leaves them out.
@@ -38,7 +38,7 @@ double probe_fma_gflops() {
     constexpr std::int64_t rounds = 4'000'000;
     std::vector<double> rates;
     volatile double used = 0.0;
-    for (int n = 0; n < repetitions; ++n) {
+    for (int n = 0; n < probe_runs; ++n) {
         double total = 0.0;
         const Stopwatch watch;
 #pragma omp parallel reduction(+ : total)
@@ -60,7 +60,7 @@ double probe_triad_gb_per_s() {
         c[std::size_t(i)] = 2.0;
     }
     std::vector<double> rates;
-    for (int n = 0; n < repetitions; ++n) {
+    for (int n = 0; n < probe_runs; ++n) {
         const double scale = 3.0 + n;
         const Stopwatch watch;
 #pragma omp parallel for schedule(static)

@@ -13,7 +13,7 @@
 namespace meltscope {
 namespace {
 
-int execute(const std::filesystem::path& folder) {
+int report_on(const std::filesystem::path& folder) {
     const RunPaths paths{folder};
     if (!std::filesystem::exists(paths.scenario()) && !std::filesystem::exists(paths.summary()) &&
         !std::filesystem::exists(paths.melt_pool_table()))
@@ -37,7 +37,7 @@ void add_report(CLI::App& program, Action& chosen) {
     report->add_option("DIR", *folder, "Run folder")->required();
     report->footer("The page needs no other file and no network.\n"
                    "Example:\n  meltscope report runs/in625_single_track");
-    report->callback([folder, &chosen] { chosen = [folder] { return execute(*folder); }; });
+    report->callback([folder, &chosen] { chosen = [folder] { return report_on(*folder); }; });
 }
 
 } // namespace meltscope

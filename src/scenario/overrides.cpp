@@ -62,7 +62,7 @@ std::vector<std::string> split_key(const std::string& text, std::string_view key
     return components;
 }
 
-std::string quoted(std::string_view text) {
+std::string as_toml_string(std::string_view text) {
     std::string result = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') {
@@ -89,7 +89,7 @@ toml::table parse_value(const std::string& text, std::string_view value) {
             }
         }
     }
-    return parse_toml(fmt::format("value = {}", quoted(value)), name);
+    return parse_toml(fmt::format("value = {}", as_toml_string(value)), name);
 }
 
 std::string spelled(const std::vector<std::string>& components, std::size_t count) {

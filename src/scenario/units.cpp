@@ -19,7 +19,7 @@ struct FreeConverter {
 };
 using ConverterPointer = std::unique_ptr<cv_converter, FreeConverter>;
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
     const auto first = text.find_first_not_of(" \t");
     if (first == std::string_view::npos) {
         return {};
@@ -87,7 +87,7 @@ Units::Units(Units&&) noexcept = default;
 Units& Units::operator=(Units&&) noexcept = default;
 
 double Units::to_si(std::string_view text, const Quantity& quantity) const {
-    const std::string_view all = trimmed(text);
+    const std::string_view all = without_blanks(text);
     double value = 0.0;
     const char* begin = all.data();
     const char* const end = begin + all.size();
@@ -105,7 +105,7 @@ double Units::to_si(std::string_view text, const Quantity& quantity) const {
     if (!std::isfinite(value)) {
         throw UnitError(fmt::format("\"{}\" is not finite", shown(text)));
     }
-    const std::string unit_text(trimmed({rest, static_cast<std::size_t>(end - rest)}));
+    const std::string unit_text(without_blanks({rest, static_cast<std::size_t>(end - rest)}));
     if (unit_text.empty()) {
         if (std::string_view(quantity.unit) == "1") {
             return value;

@@ -57,6 +57,7 @@ class Pipeline::Worker {
     void submit(std::shared_ptr<const Snapshot> snapshot, bool render, bool files);
     void write_image(std::shared_ptr<const Snapshot> snapshot, const std::string& view,
                      const std::filesystem::path& png);
+    void wait_for_earlier_than(double time);
     void finish();
 
     PipelineStats stats() const {
@@ -225,6 +226,13 @@ void Pipeline::Worker::write_image(std::shared_ptr<const Snapshot> snapshot, con
     } catch (const std::future_error&) {
         throw VizError("no picture: the run's pictures have ended");
     }
+}
+
+void Pipeline::Worker::wait_for_earlier_than(double time) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { // queued in the order of time
+        return queue_.empty() || queue_.front().snapshot->time >= time;
+    });
 }
 
 void Pipeline::Worker::finish() {
@@ -435,6 +443,10 @@ void Pipeline::set_background(Background background) {
 
 RenderOptions Pipeline::render_options() const {
     return worker_->options();
+}
+
+void Pipeline::wait_for_earlier_than(double time) {
+    worker_->wait_for_earlier_than(time);
 }
 
 void Pipeline::finish() {

@@ -75,6 +75,10 @@ class Pipeline {
     /// As the last sets left them.
     RenderOptions render_options() const;
 
+    /// Waits until all that was queued for instants before `time` (s) is written: what a run that is taken up
+    /// at that time does not make again.
+    void wait_for_earlier_than(double time);
+
     /// Waits until everything queued is written and ends the thread and its display. Later submits do
     /// nothing.
     void finish();

@@ -139,8 +139,10 @@ std::vector<Sink> RunOutputs::sinks() {
 }
 
 void RunOutputs::write_checkpoint_of(const Run& run) {
+    // A restart makes nothing again that lies before it: a kill must not find a checkpoint ahead of the files.
+    pipeline_->wait_for_earlier_than(run.simulation.time);
     const auto path = paths_.checkpoint(run.simulation.step);
-    std::filesystem::create_directories(path.parent_path());
+    std::filesystem::create_directory(path.parent_path()); // fails if the run folder has been removed
     write_checkpoint(path, checkpoint_of(run, scenario_text_));
     prune_checkpoints(paths_, scenario_.checkpoint.keep);
     last_checkpoint_ = path;

@@ -28,6 +28,7 @@ void watch_signals() {
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     std::signal(SIGPIPE, SIG_IGN); // a reader of the output that goes away must not take the run along
+    std::signal(SIGXFSZ, SIG_IGN); // a file too large for a quota is an error of its writer, with a name
 }
 
 int stop_signal() {

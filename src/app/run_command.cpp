@@ -9,6 +9,7 @@
 #include "stopwatch.hpp"
 #include "text.hpp"
 
+#include "meltscope/scenario/scenario_file.hpp"
 #include "meltscope/scenario/setup.hpp"
 #include "meltscope/scenario/units.hpp"
 
@@ -167,12 +168,26 @@ void print_phases(const Run& run, std::int64_t steps, Terminal& terminal) {
             1e-6 * double(steps) * double(run.simulation.particles.count()) / wall.solver));
 }
 
+/// Says what is different from the scenario that a checkpoint was made under.
+void tell_changes(const std::vector<std::string>& changes, Terminal& terminal) {
+    for (const std::string& change : changes) {
+        terminal.say(fmt::format("changed since the checkpoint: {}", change));
+        if (change.starts_with("body["))
+            terminal.warn("a changed body has no effect: the particles are those of the checkpoint");
+    }
+}
+
 /// Steps the run; run.json says how it ended, whatever happens.
-RunOutcome step_through(Run& run, const RunConnections& connections, RunOutputs& outputs) {
+RunOutcome step_through(Run& run, const RunConnections& connections, RunOutputs& outputs,
+                        Terminal& terminal) {
     try {
         return run_to_end(run, connections);
     } catch (const std::exception& error) {
-        outputs.finish(run, "failed", error.what());
+        try {
+            outputs.finish(run, "failed", error.what());
+        } catch (const std::exception& further) { // what ended the run may keep this from being written, too
+            terminal.warn(further.what());
+        }
         throw;
     }
 }
@@ -200,6 +215,8 @@ int execute(const RunRequest& request) {
     // The folder is claimed before the long work of filling the domain, the input is judged before both.
     const OutputFolder folder = output_folder(request);
     InputOfRun input = read_input(scenario_file, request.restart, request.overrides);
+    const auto changes =
+        input.original ? scenario_changes(*input.original, input.scenario) : std::vector<std::string>();
     const RunFolder claim(folder.path, folder.goes_on      ? ExistingRun::resume
                                        : request.overwrite ? ExistingRun::overwrite
                                                            : ExistingRun::refuse);
@@ -215,6 +232,7 @@ int execute(const RunRequest& request) {
     if (request.steps > 0)
         run.last_step = first_step + request.steps;
     describe(prepared, folder.path, threads, terminal);
+    tell_changes(changes, terminal);
 
     for (const std::string& note : scenario_notes(prepared.scenario))
         terminal.note(note);
@@ -230,7 +248,7 @@ int execute(const RunRequest& request) {
     connections.sinks = outputs.sinks();
     connections.sinks.push_back(watch.sink());
 
-    const RunOutcome outcome = step_through(run, connections, outputs);
+    const RunOutcome outcome = step_through(run, connections, outputs, terminal);
     console.finish();
     terminal.end_progress();
     balance(run.simulation);

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Builds the fuzzers and runs them, one after another or those that are named, MINUTES each (30).
+#   scripts/fuzz.sh [INPUT...]        INPUT: scenario material path ball stl console journal checkpoint
+# What was learnt lies in build/fuzz/corpus/INPUT, what was found in build/fuzz/found/INPUT-*.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+inputs=("$@")
+((${#inputs[@]})) || inputs=(scenario material path ball stl console journal checkpoint)
+
+declare -A dictionary=([scenario]=toml [material]=toml [path]=path [ball]=path [stl]=stl
+                       [console]=console [journal]=console [checkpoint]=console)
+for input in "${inputs[@]}"; do
+  if [[ -z ${dictionary[$input]-} ]]; then
+    echo "fuzz: there is no input $input; there are ${!dictionary[*]}" >&2
+    exit 2
+  fi
+done
+
+./scripts/setup.sh --fuzz
+cmake --preset fuzz
+cmake --build --preset fuzz --target "${inputs[@]/%/_fuzz}"
+
+export OMP_NUM_THREADS=1
+result=0
+for input in "${inputs[@]}"; do
+  echo "fuzz: $input"
+  mkdir -p "build/fuzz/corpus/$input" build/fuzz/found
+  "build/fuzz/${input}_fuzz" -max_total_time=$((60 * ${MINUTES:-30})) -timeout=60 -rss_limit_mb=2048 -max_len=3000 \
+    -print_final_stats=1 -dict="tests/fuzz/dictionaries/${dictionary[$input]}.dict" \
+    -artifact_prefix="build/fuzz/found/$input-" "build/fuzz/corpus/$input" "tests/fuzz/corpus/$input" || result=1
+done
+exit $result

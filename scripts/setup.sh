@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that meltscope needs to be built, run and tested. Says which; does nothing if all are there.
+# With --fuzz also those of the fuzzers.
 set -euo pipefail
 
 packages=(
@@ -12,6 +13,12 @@ packages=(
   # to test, and to read the results with other programs
   libgtest-dev libbenchmark-dev python3-vtk9 python3-meshio python3-h5py python3-numpy python3-matplotlib
 )
+if [[ ${1-} == --fuzz ]]; then
+  packages+=(clang libclang-rt-dev libomp-dev llvm)
+elif (($# > 0)); then
+  echo "setup: the only option is --fuzz, not $1" >&2
+  exit 2
+fi
 
 missing=()
 for package in "${packages[@]}"; do

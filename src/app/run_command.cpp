@@ -87,9 +87,13 @@ OutputFolder output_folder(const RunRequest& request) {
         folder.path = request.output;
     else if (own)
         folder.path = *own;
-    else
-        folder.path = std::filesystem::path("runs") /
-                      (request.scenario.empty() ? request.restart : request.scenario).stem();
+    else {
+        const std::filesystem::path& named = request.scenario.empty() ? request.restart : request.scenario;
+        if (named.stem().empty() || named.stem() == "..") // ...toml: runs/.. is no run folder
+            throw UsageError(
+                fmt::format("{} gives no name to a run folder: name one with --output", named.string()));
+        folder.path = std::filesystem::path("runs") / named.stem();
+    }
     std::error_code not_there;
     folder.goes_on = own && std::filesystem::equivalent(folder.path, *own, not_there);
     return folder;

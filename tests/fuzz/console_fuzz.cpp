@@ -8,6 +8,7 @@
 
 #include <cctype>
 #include <deque>
+#include <optional>
 
 using namespace meltscope;
 
@@ -28,6 +29,18 @@ std::string tamed(std::string_view text) {
     return result;
 }
 
+/// Packing a million grains takes minutes, which is no fault: of grains only these.
+bool takes_long(std::string line) {
+    constexpr std::string_view grains = " d10 10 um d50 12 um d90 14 um";
+    if (const std::size_t at = line.find(grains); at != std::string::npos)
+        line.erase(at, grains.size());
+    std::erase(line, '"');
+    for (const char* size : {"d1", "d5", "d9"})
+        if (line.find(size) != std::string::npos)
+            return true;
+    return false;
+}
+
 /// What a library's own exceptions say is no answer for people.
 void require_readable(const std::string& reply) {
     for (const char* bare :
@@ -46,7 +59,8 @@ struct Session {
         std::filesystem::current_path(scratch.path());
     }
 
-    Run carry_out(std::string_view text, int& steps) {
+    Run carry_out(std::string_view text) {
+        int steps = 0;
         std::filesystem::current_path("/");
         scratch.empty();
         std::filesystem::current_path(scratch.path());
@@ -60,10 +74,14 @@ struct Session {
             if (text.find('\n') == std::string_view::npos)
                 break;
         }
-        CompletionNames names{{"laser.red.power"}, host.fields};
+        CompletionNames names;
+        names.parameters = {"laser.red.power"};
+        names.fields = host.fields;
         for (std::size_t count = 0; !lines.empty() && count < 2 * most_lines && !run.stop_reason; ++count) {
             const std::string line = std::move(lines.front());
             lines.pop_front();
+            if (takes_long(line))
+                continue;
             if (line.empty() && steps < most_steps && !at_end_of_run(run)) {
                 note_landing(console, run);
                 fuzz::step(console, run);
@@ -95,7 +113,9 @@ struct Session {
             for (; next < entries.size() && entries[next].step == run.simulation.step && !run.stop_reason;
                  ++next)
                 if (!entries[next].waited) {
+                    console.from_journal = true;
                     const Reply reply = execute(console, run, entries[next].command);
+                    console.from_journal = false;
                     if (!reply.ok)
                         fuzz::finding("replay of \"" + entries[next].command + "\": " + reply.text);
                     execute_due(console, run);
@@ -114,8 +134,9 @@ struct Session {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static Session session;
     const std::string text = tamed(fuzz::text_of(data, size));
-    int steps = 0;
-    const Run run = session.carry_out(text, steps);
-    session.replay(run.journal, run);
+    std::optional<Run> run;
+    // A step may find that what was asked for has no solution, and says so.
+    if (fuzz::is_taken<std::runtime_error>([&] { run = session.carry_out(text); }))
+        session.replay(run->journal, *run);
     return 0;
 }

@@ -32,15 +32,25 @@ RenderSettings render_settings(const RenderSpec& spec) {
     return settings;
 }
 
-ConsoleHost host_of(const RunPaths& paths, const PreparedRun& prepared, RunOutputs& outputs,
+void take_scenario(ConsoleHost& host, const Scenario& scenario) {
+    host.scenario = to_toml(scenario);
+    host.parameters = run_parameters(scenario);
+    if (!scenario.layers.empty())
+        host.layer = scenario.layers.front().layer;
+    host.render = render_settings(scenario.render);
+}
+
+ConsoleHost host_of(const RunPaths& paths, PreparedRun& prepared, RunOutputs& outputs,
                     std::function<std::optional<std::string>()> stop_request) {
     ConsoleHost host;
     host.folder = paths.root;
-    host.scenario = to_toml(prepared.scenario);
-    host.parameters = run_parameters(prepared.scenario);
-    if (!prepared.scenario.layers.empty())
-        host.layer = prepared.scenario.layers.front().layer;
-    host.render = render_settings(prepared.scenario.render);
+    take_scenario(host, prepared.scenario);
+    host.adopted = prepared.adopted;
+    host.adopt = [&prepared, &outputs](Run&, ConsoleHost& console, const std::vector<std::string>& changes) {
+        adopt_changes(prepared, changes);
+        take_scenario(console, prepared.scenario);
+        outputs.scenario_changed();
+    };
     host.fields = viz::field_names();
     host.set_render = [&outputs](const RenderSettings& settings) { outputs.set_render(settings); };
     if (outputs.draws())
@@ -60,7 +70,7 @@ bool says_something(const std::string& line) {
 
 } // namespace
 
-RunConsole::RunConsole(const SteeringRequest& request, const RunPaths& paths, const PreparedRun& prepared,
+RunConsole::RunConsole(const SteeringRequest& request, const RunPaths& paths, PreparedRun& prepared,
                        RunOutputs& outputs, Terminal& terminal,
                        std::function<std::optional<std::string>()> stop_request)
     : terminal_(terminal), console_(host_of(paths, prepared, outputs, std::move(stop_request)),

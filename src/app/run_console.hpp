@@ -27,7 +27,7 @@ struct SteeringRequest {
 class RunConsole {
   public:
     /// Throws UsageError for a script or a journal that cannot be read. `stop_request`: see ConsoleHost.
-    RunConsole(const SteeringRequest& request, const RunPaths& paths, const PreparedRun& prepared,
+    RunConsole(const SteeringRequest& request, const RunPaths& paths, PreparedRun& prepared,
                RunOutputs& outputs, Terminal& terminal,
                std::function<std::optional<std::string>()> stop_request);
     ~RunConsole();

@@ -43,11 +43,12 @@ std::vector<std::string> split_words(std::string_view line) {
             break;
         std::string word;
         while (at < line.size() && !is_gap(line[at])) {
-            if (line[at] != '"') {
+            const char quote = line[at];
+            if (quote != '"' && quote != '\'') {
                 word += line[at++];
                 continue;
             }
-            const std::size_t close = line.find('"', at + 1);
+            const std::size_t close = line.find(quote, at + 1);
             if (close == std::string_view::npos)
                 throw CommandError("a quote is not closed");
             word += line.substr(at + 1, close - at - 1);
@@ -59,8 +60,12 @@ std::vector<std::string> split_words(std::string_view line) {
 }
 
 std::string as_word(std::string_view word) {
-    const bool plain = !word.empty() && word.find_first_of(" \t,#") == std::string_view::npos;
-    return plain ? std::string(word) : fmt::format("\"{}\"", word);
+    if (!word.empty() && word.find_first_of(" \t,#\"'") == std::string_view::npos)
+        return std::string(word);
+    std::string text = "\""; // pieces without double quotes in these, double quotes in single ones
+    for (const char c : word)
+        text += c == '"' ? std::string("\"'\"'\"") : std::string(1, c);
+    return text + "\"";
 }
 
 bool looks_like_number(std::string_view word) {

@@ -1,9 +1,6 @@
 #include "attach_socket.hpp"
 
 #include "meltscope/console/line_editor.hpp"
-#include "meltscope/console/parameters.hpp"
-
-#include <poll.h>
 
 #include <array>
 #include <condition_variable>
@@ -64,6 +61,23 @@ class LineReader {
     std::string buffer_;
 };
 
+/// Takes up `KIND WORD...` as the server sends it for completion.
+void take_names(const std::string& text, CompletionNames& names) {
+    std::vector<std::string> words = split_words(text);
+    if (words.empty())
+        return;
+    const std::string kind = words.front();
+    words.erase(words.begin());
+    if (kind == "parameters")
+        names.parameters = std::move(words);
+    else if (kind == "fields")
+        names.fields = std::move(words);
+    else if (kind == "lasers")
+        names.lasers = std::move(words);
+    else if (kind == "materials")
+        names.materials = std::move(words);
+}
+
 } // namespace
 
 bool attach(const std::filesystem::path& folder, bool watch) {
@@ -81,6 +95,8 @@ bool attach(const std::filesystem::path& folder, bool watch) {
     std::mutex mutex;
     std::int64_t asked = 0, answered = 0;
     bool all_said = false, failed = false, interrupted = false;
+    CompletionNames names;
+    std::string status;
     const auto leave = [&] {
         const std::lock_guard lock(mutex);
         all_said = true;
@@ -105,11 +121,13 @@ bool attach(const std::filesystem::path& folder, bool watch) {
         send_all(connection.get(), again ? "quit\n" : "pause\n");
     };
     callbacks.end = leave;
-    callbacks.complete = [](std::string_view typed) {
-        CompletionNames names;
-        for (const Parameter& parameter : parameters_of({Laser{}}))
-            names.parameters.push_back(parameter.name);
+    callbacks.complete = [&](std::string_view typed) {
+        const std::lock_guard lock(mutex);
         return completions(typed, names);
+    };
+    callbacks.status = [&] {
+        const std::lock_guard lock(mutex);
+        return status;
     };
     LineEditor editor("meltscope> ", history_file(), std::move(callbacks));
     do {
@@ -121,6 +139,12 @@ bool attach(const std::filesystem::path& folder, bool watch) {
             failed = failed || letter == 'f';
             if (script && all_said && answered == asked)
                 break;
+        } else if (letter == 'c') {
+            const std::lock_guard lock(mutex);
+            take_names(text, names);
+        } else if (letter == 's') {
+            const std::lock_guard lock(mutex);
+            status = text;
         } else {
             editor.print(text);
         }

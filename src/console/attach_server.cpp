@@ -14,6 +14,8 @@
 namespace meltscope {
 namespace {
 
+constexpr int status_every = 250; ///< ms
+
 /// Lines with a letter before each.
 std::string lettered(char letter, const std::string& text) {
     std::string result;
@@ -81,7 +83,9 @@ class AttachServer::Worker {
         std::string inbox;
         Console::Id id = 0; ///< 0: has not said hello yet
         bool may_change = false;
-        bool done = false; ///< to be let go of
+        bool prompt = false;     ///< a person sits there
+        std::string status_sent; ///< what its status line shows
+        bool done = false;       ///< to be let go of
     };
 
     void serve() {
@@ -92,9 +96,12 @@ class AttachServer::Worker {
                 const short writes = client.outbox->bytes.empty() ? short(0) : short(POLLOUT);
                 watched.push_back({client.socket.get(), short(POLLIN | writes), 0});
             }
-            if (poll(watched.data(), watched.size(), -1) < 0 && errno != EINTR)
+            const bool prompts =
+                std::any_of(clients_.begin(), clients_.end(), [](const Client& c) { return c.prompt; });
+            if (poll(watched.data(), watched.size(), prompts ? status_every : -1) < 0 && errno != EINTR)
                 break;
             pipe_.drain();
+            show_status();
             for (std::size_t n = 2; n < watched.size(); ++n) {
                 if (watched[n].revents & (POLLIN | POLLHUP | POLLERR))
                     receive(clients_[n - 2]);
@@ -112,11 +119,25 @@ class AttachServer::Worker {
         drop_done();
     }
 
+    /// Tells prompts where the run is, if they have read all that came before.
+    void show_status() {
+        const std::string status = console_.status_line();
+        for (Client& client : clients_) {
+            const std::lock_guard lock(client.outbox->mutex);
+            if (!client.prompt || !client.outbox->bytes.empty() || client.status_sent == status)
+                continue;
+            client.outbox->bytes = fmt::format("s{}\n", status);
+            client.status_sent = status;
+        }
+    }
+
     void accept_client() {
         Client client;
         client.socket = Descriptor(accept4(listening_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-        if (!client.socket)
+        if (!client.socket) {
+            poll(nullptr, 0, 50); // no descriptor is left: whoever knocks does so again at once
             return;
+        }
         const uid_t user = peer_user(client.socket.get());
         if (user != geteuid() && user != 0)
             return;
@@ -178,6 +199,9 @@ class AttachServer::Worker {
         client.may_change = role == "write" && !taken;
         client.outbox->put(role == "write" && taken ? "wanother console has the say; this one looks on\n"
                                                     : fmt::format("w{}\n", console_.status_line()));
+        client.prompt = kind == "prompt";
+        if (client.prompt)
+            client.outbox->put(names_to_complete());
         Speaker speaker;
         speaker.waits = kind == "script";
         speaker.may_change = client.may_change;
@@ -191,6 +215,22 @@ class AttachServer::Worker {
             pipe_.wake();
         };
         client.id = console_.open(std::move(speaker));
+    }
+
+    std::string names_to_complete() const {
+        const CompletionNames names = console_.completion_names();
+        std::string text;
+        const auto add = [&](const char* kind, const std::vector<std::string>& words) {
+            text += fmt::format("c{}", kind);
+            for (const std::string& word : words)
+                text += fmt::format(" {}", as_word(word));
+            text += '\n';
+        };
+        add("parameters", names.parameters);
+        add("fields", names.fields);
+        add("lasers", names.lasers);
+        add("materials", names.materials);
+        return text;
     }
 
     void send_to(Client& client) {

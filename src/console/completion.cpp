@@ -40,6 +40,42 @@ std::vector<std::string> files(const std::string& word) {
     return found;
 }
 
+/// The words that begin so, of both lists.
+std::vector<std::string> beginning_with(const std::string& word, std::vector<std::string> candidates,
+                                        const std::vector<std::string>& more) {
+    candidates.insert(candidates.end(), more.begin(), more.end());
+    return beginning_with(word, candidates);
+}
+
+/// The names of the lasers where one has to be told from others.
+std::vector<std::string> lasers_to_name(const CompletionNames& names) {
+    return names.lasers.size() > 1 ? names.lasers : std::vector<std::string>();
+}
+
+bool is_one_of(const std::string& word, const std::vector<std::string>& words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::vector<std::string> path_words(const std::vector<std::string>& words, const CompletionNames& names) {
+    const std::string& word = words.back();
+    if (is_one_of(words[words.size() - 2], {"load", "append"}))
+        return files(word);
+    if (words.size() == 2)
+        return beginning_with(word, path_verbs(), lasers_to_name(names));
+    if (words.size() == 3 && is_one_of(words[1], lasers_to_name(names)))
+        return beginning_with(word, path_verbs());
+    return beginning_with(word, path_keywords());
+}
+
+std::vector<std::string> layer_words(const std::vector<std::string>& words, const CompletionNames& names) {
+    const std::string& before = words[words.size() - 2];
+    if (before == "material")
+        return beginning_with(words.back(), names.materials);
+    if (before == "basis")
+        return beginning_with(words.back(), {"number", "volume"});
+    return beginning_with(words.back(), layer_keywords());
+}
+
 /// Words that may stand as the value of a parameter.
 std::vector<std::string> values_of(const std::string& name, const CompletionNames& names) {
     if (name == "render.field")
@@ -76,7 +112,8 @@ std::vector<std::string> completions(std::string_view line, const CompletionName
         return {};
     case Completes::command:
         if (command->name == "help")
-            return words.size() == 2 ? beginning_with(word, command_names()) : std::vector<std::string>();
+            return words.size() == 2 ? beginning_with(word, command_names(), names.parameters)
+                                     : std::vector<std::string>();
         for (std::size_t n = 2; n + 1 < words.size(); ++n) // at TIME [UNIT] COMMAND ...
             if (const auto known = command_names();
                 std::find(known.begin(), known.end(), words[n]) != known.end()) {
@@ -96,13 +133,12 @@ std::vector<std::string> completions(std::string_view line, const CompletionName
         return beginning_with(word, view_names());
     case Completes::field:
         return beginning_with(word, names.fields);
+    case Completes::laser:
+        return words.size() == 2 ? beginning_with(word, lasers_to_name(names)) : std::vector<std::string>();
     case Completes::path_verb:
-        if (words.size() > 2 && (words[words.size() - 2] == "load" || words[words.size() - 2] == "append"))
-            return files(word);
-        return beginning_with(
-            word, words.size() == 2
-                      ? std::vector<std::string>{"show", "clear", "line", "dwell", "load", "append", "goto"}
-                      : std::vector<std::string>{"speed", "power", "off", "format"});
+        return path_words(words, names);
+    case Completes::layer_word:
+        return layer_words(words, names);
     }
     return {};
 }

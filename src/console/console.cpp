@@ -2,6 +2,8 @@
 
 #include "meltscope/console/parameters.hpp"
 
+#include "voices.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,9 +17,12 @@ constexpr std::chrono::milliseconds look_interval{50};
 
 } // namespace
 
-Console::Console(ConsoleHost host, bool paused) : state_(std::move(host)) {
+Console::Console(ConsoleHost host, bool paused)
+    : state_(std::move(host)), voices_(std::make_unique<Voices>()) {
     state_.running = !paused;
 }
+
+Console::~Console() = default;
 
 void Console::replay(const std::string& journal, const std::string& name) {
     replay_ = parse_journal(journal, name);
@@ -26,51 +31,23 @@ void Console::replay(const std::string& journal, const std::string& name) {
 }
 
 Console::Id Console::open(Speaker speaker) {
-    const std::lock_guard lock(mutex_);
-    auto voice = std::make_unique<Voice>();
-    voice->id = next_id_++;
-    voice->speaker = std::move(speaker);
-    voices_.push_back(std::move(voice));
-    return voices_.back()->id;
+    return voices_->open(std::move(speaker));
 }
 
 bool Console::say(Id speaker, std::string line) {
-    const std::lock_guard lock(mutex_);
-    for (const auto& voice : voices_) {
-        if (voice->id != speaker)
-            continue;
-        if (voice->lines.size() >= voice->speaker.most_lines)
-            return false;
-        ++voice->count;
-        const std::string& name = voice->speaker.name;
-        voice->lines.push_back(
-            {std::move(line), name.empty() ? name : fmt::format("{}:{}", name, voice->count), true});
-        interrupts_ = 0;
-        something_new_.notify_all();
-        return true;
-    }
-    return false;
+    return voices_->say(speaker, std::move(line));
 }
 
 void Console::finish(Id speaker) {
-    const std::lock_guard lock(mutex_);
-    for (const auto& voice : voices_)
-        if (voice->id == speaker)
-            voice->finished = true;
-    something_new_.notify_all();
+    voices_->finish(speaker);
 }
 
 void Console::close(Id speaker) {
-    const std::lock_guard lock(mutex_);
-    std::erase_if(voices_, [&](const auto& voice) { return voice->id == speaker; });
-    something_new_.notify_all();
+    voices_->close(speaker);
 }
 
 void Console::interrupt() {
-    const std::lock_guard lock(mutex_);
-    ++interrupts_;
-    interrupt_new_ = true;
-    something_new_.notify_all();
+    voices_->interrupt();
 }
 
 std::string Console::status_line() const {
@@ -97,6 +74,7 @@ std::string Console::left_of_replay() const {
 void Console::begin(Run& run) {
     begun_ = true;
     take_up_journal(state_, run);
+    note_adoption(state_, run);
     // A run taken up from a checkpoint has done the first part of the journal that it replays.
     const std::vector<JournalEntry> done = parse_journal(run.journal, "journal of the run");
     for (const JournalEntry& entry : done) {
@@ -107,10 +85,21 @@ void Console::begin(Run& run) {
                 fmt::format("{} is not the journal that led to step {}", replay_name_, run.simulation.step));
         ++replayed_;
     }
+    publish_names(run);
+}
+
+void Console::publish_names(const Run& run) {
+    CompletionNames names;
+    const std::vector<Laser>& lasers = run.simulation.parameters.lasers;
+    for (const Parameter& parameter : parameters_of(lasers))
+        names.parameters.push_back(parameter.name);
+    for (const Laser& laser : lasers)
+        names.lasers.push_back(laser.name);
+    for (const Material& material : run.simulation.parameters.materials)
+        names.materials.push_back(material.name);
+    names.fields = state_.host.fields;
     const std::lock_guard lock(mutex_);
-    for (const Parameter& parameter : parameters_of(run.simulation.parameters.lasers))
-        names_.parameters.push_back(parameter.name);
-    names_.fields = state_.host.fields;
+    names_ = std::move(names);
 }
 
 void Console::replay_due(Run& run) {
@@ -135,15 +124,10 @@ void Console::replay_due(Run& run) {
 }
 
 bool Console::interrupted(Run& run) {
-    int count = 0;
-    {
-        const std::lock_guard lock(mutex_);
-        if (!interrupt_new_)
-            return false;
-        interrupt_new_ = false;
-        count = interrupts_;
-    }
-    if (count >= 2) {
+    const std::optional<int> count = voices_->take_interrupts();
+    if (!count)
+        return false;
+    if (*count >= 2) {
         stop(state_, run, "interrupted twice");
     } else {
         state_.running = false;
@@ -153,74 +137,15 @@ bool Console::interrupted(Run& run) {
     return true;
 }
 
-void Console::tell(Id id, const std::string& line, const Reply& reply) {
-    std::function<void(const std::string&, const Reply&)> answer;
-    {
-        const std::lock_guard lock(mutex_);
-        for (const auto& voice : voices_)
-            if (voice->id == id)
-                answer = voice->speaker.answer;
-    }
-    if (answer)
-        answer(line, reply);
-}
-
-void Console::tell_others(Id id, const std::string& text) {
-    std::vector<std::function<void(const std::string&, const Reply&)>> answers;
-    {
-        const std::lock_guard lock(mutex_);
-        for (const auto& voice : voices_)
-            if (voice->id != id && voice->speaker.answer)
-                answers.push_back(voice->speaker.answer);
-    }
-    for (const auto& answer : answers)
-        answer({}, {true, text, false});
-}
-
 void Console::tell_all(const std::string& text) {
-    tell_others(0, text);
-}
-
-std::deque<Console::Line>::iterator Console::Voice::next_line(std::int64_t goals_reached) {
-    if (lines.empty() || waits_for <= goals_reached)
-        return lines.begin();
-    // Scripts wait; so does the rest of a sourced file, but not what is typed meanwhile.
-    return speaker.waits
-               ? lines.end()
-               : std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.given; });
+    voices_->tell_others(0, text);
 }
 
 bool Console::do_next_line(Run& run) {
-    Line line;
-    Id id = 0;
-    {
-        const std::lock_guard lock(mutex_);
-        for (const auto& voice : voices_) {
-            const auto next = voice->next_line(goals_reached_);
-            if (next == voice->lines.end())
-                continue;
-            line = std::move(*next);
-            voice->lines.erase(next);
-            id = voice->id;
-            break;
-        }
-    }
-    if (id == 0)
+    const auto next = voices_->take_next(goals_reached_);
+    if (!next)
         return false;
-    carry_out(run, id, line);
-    return true;
-}
-
-void Console::carry_out(Run& run, Id id, const Line& line) {
-    Speaker speaker;
-    {
-        const std::lock_guard lock(mutex_);
-        const auto voice =
-            std::find_if(voices_.begin(), voices_.end(), [&](const auto& v) { return v->id == id; });
-        if (voice == voices_.end())
-            return;
-        speaker = (*voice)->speaker;
-    }
+    const auto& [id, speaker, line] = *next;
     const std::int64_t goal_before = state_.goal.number;
     Reply reply;
     bool looks = true;
@@ -236,38 +161,23 @@ void Console::carry_out(Run& run, Id id, const Line& line) {
     }
     if (state_.goal.number != goal_before) // a new goal takes the place of the old one
         goals_reached_ = std::max(goals_reached_, goal_before);
-    const bool names_place = !reply.ok && !line.place.empty();
-    if (names_place)
+    if (!reply.ok && !line.place.empty())
         reply.text = fmt::format("{}: {}: {}", line.place, line.text, reply.text);
-    {
-        const std::lock_guard lock(mutex_);
-        for (const auto& voice : voices_) {
-            if (voice->id != id)
-                continue;
-            if (reply.starts && (speaker.waits || !line.given))
-                voice->waits_for = state_.goal.number;
-            if (!reply.ok) // what is left of a sourced file
-                while (!voice->lines.empty() && !voice->lines.front().given)
-                    voice->lines.pop_front();
-            if (voice->lines.size() + state_.sourced.size() > speaker.most_lines) {
-                reply = {false, "too many lines wait: does a file read itself?", false};
-                while (!voice->lines.empty() && !voice->lines.front().given)
-                    voice->lines.pop_front();
-            } else {
-                for (std::size_t n = state_.sourced.size(); n-- > 0;)
-                    voice->lines.push_front(
-                        {state_.sourced[n], fmt::format("{}:{}", state_.sourced_from, n + 1), false});
-            }
-            state_.sourced.clear();
-        }
-    }
-    tell(id, line.text, reply);
+    if (reply.starts && (speaker.waits || !line.given))
+        voices_->let_wait(id, state_.goal.number);
+    if (!reply.ok)
+        voices_->drop_sourced(id);
+    const std::vector<std::string> sourced = std::exchange(state_.sourced, {});
+    if (!voices_->put_first(id, sourced, state_.sourced_from))
+        reply = {false, "too many lines wait: does a file read itself?", false};
+    voices_->tell(id, line.text, reply);
     if (reply.ok && !looks) // all may know what is done to the run
-        tell_others(id, fmt::format("({}) {}", line.text, reply.text));
+        voices_->tell_others(id, fmt::format("({}) {}", line.text, reply.text));
     if (!reply.ok && speaker.must_succeed) {
         script_error_ = reply.text;
         stop(state_, run, reply.text);
     }
+    return true;
 }
 
 void Console::reach_goal(Run& run) {
@@ -290,32 +200,20 @@ void Console::reach_goal(Run& run) {
 /// Lets go of those who have said all. After a script the run goes on, after a pipe it stops, unless a prompt
 /// is open.
 void Console::retire_silent_voices(Run& run) {
-    bool stops = false, goes_on = false, prompt = false;
-    {
-        const std::lock_guard lock(mutex_);
-        std::erase_if(voices_, [&](const auto& voice) {
-            const bool silent = voice->finished && voice->lines.empty() && voice->waits_for <= goals_reached_;
-            stops = stops || (silent && voice->speaker.stops_at_end);
-            goes_on = goes_on || (silent && voice->speaker.waits);
-            prompt = prompt || (!silent && voice->speaker.keeps_run);
-            return silent;
-        });
-    }
-    if (prompt)
+    const Voices::Retired retired = voices_->retire_silent(goals_reached_);
+    if (retired.prompt)
         return;
-    if (stops)
+    if (retired.stops)
         stop(state_, run, "end of input");
-    else if (goes_on)
+    else if (retired.goes_on)
         state_.running = true;
 }
 
 /// True if a run that does not go on has nobody to tell it what to do.
 bool Console::waits_for_nobody(const Run& run) const {
-    const std::lock_guard lock(mutex_);
     if (!at_end_of_run(run)) // a replay repeats no pauses; else a console may be attached
-        return voices_.empty() && !replay_.empty();
-    return std::none_of(voices_.begin(), voices_.end(),
-                        [](const auto& voice) { return voice->speaker.keeps_run || voice->speaker.waits; });
+        return voices_->none() && !replay_.empty();
+    return !voices_->any_keeps_run();
 }
 
 void Console::publish(const Run& run) {
@@ -356,13 +254,7 @@ void Console::apply(Run& run) {
                 run.stop_reason = *reason;
                 return;
             }
-        std::unique_lock lock(mutex_);
-        const auto is_new = [this] {
-            return interrupt_new_ || std::any_of(voices_.begin(), voices_.end(), [this](const auto& voice) {
-                       return voice->next_line(goals_reached_) != voice->lines.end();
-                   });
-        };
-        something_new_.wait_for(lock, look_interval, is_new);
+        voices_->wait_for_next(goals_reached_, look_interval);
     }
 }
 

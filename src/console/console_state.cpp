@@ -75,6 +75,8 @@ void take_up(ConsoleState& console, Run& run, const JournalEntry& entry) {
         const bool picture_setting = words.size() > 2 && words[0] == "set" &&
                                      words[1].starts_with("render.") && words[1] != "render.every";
         console.from_journal = true;
+        if (!words.empty() && words[0] == "adopt")
+            adopt_picture_settings(console, words);
         if (!words.empty() && (words[0] == "at" || words[0] == "land" || picture_setting)) {
             Arguments arguments({words.begin() + 1, words.end()}, console.units);
             Call call{console, run, arguments, {}, false};
@@ -138,6 +140,13 @@ void take_up_journal(ConsoleState& console, Run& run) {
         return;
     write_file_atomically(RunPaths{console.host.folder}.journal(), journal_header + run.journal);
     console.journal_written = run.journal.size();
+}
+
+void note_adoption(ConsoleState& console, Run& run) {
+    if (console.host.adopted.empty())
+        return;
+    note(console, run, console.host.adopted, false);
+    adopt_picture_settings(console, split_words(console.host.adopted));
 }
 
 std::vector<Reply> execute_due(ConsoleState& console, Run& run) {

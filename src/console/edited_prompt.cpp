@@ -151,6 +151,7 @@ class EditedPrompt : public Prompt {
         bind("^C", "meltscope-interrupt", "drop the line, or pause", &drop_line);
         bind("^D", "meltscope-end", "delete, or end the input", &delete_or_end);
         bind("^Z", "meltscope-suspend", "suspend the program", &suspend);
+        bind("^J", "meltscope-enter", "end the line", &enter);
         el_set(editor_, EL_BIND, "^R", "em-inc-search-prev", nullptr);
         el_set(editor_, EL_BIND, "^W", "ed-delete-prev-word", nullptr);
         // Keys come in their order: Ctrl-C as a key, not as a signal that overtakes what was typed before it.
@@ -236,6 +237,14 @@ class EditedPrompt : public Prompt {
             }
             return 1;
         }
+    }
+
+    /// What stays on the screen of a line is what was typed.
+    static unsigned char enter(EditLine* editor, int) {
+        of(editor).shown_status_.clear();
+        el_set(editor, EL_REFRESH);
+        el_push(editor, "\r"); // bound to the end of a line, as Enter comes as \n
+        return CC_NORM;
     }
 
     static unsigned char drop_line(EditLine* editor, int) {

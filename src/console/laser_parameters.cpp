@@ -1,20 +1,12 @@
-#include "meltscope/console/parameters.hpp"
+#include "parameter_parts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace meltscope {
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-std::string written(double value, const Quantity& quantity) {
-    return std::string_view(quantity.unit) == "1" ? exact(value)
-                                                  : fmt::format("{} {}", exact(value), quantity.unit);
-}
 
 /// Power while the beam is on, W: what the path asks for here, or the laser's own.
 double power_of(const Laser& laser, double time) {

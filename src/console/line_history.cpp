@@ -13,7 +13,7 @@
 namespace meltscope {
 namespace {
 
-constexpr int length = 2000;
+constexpr int history_length = 2000;
 
 } // namespace
 
@@ -27,7 +27,7 @@ std::filesystem::path history_file() {
 
 LineHistory::LineHistory(std::filesystem::path file) : file_(std::move(file)), history_(history_init()) {
     HistEvent event;
-    history(history_, &event, H_SETSIZE, length);
+    history(history_, &event, H_SETSIZE, history_length);
     history(history_, &event, H_SETUNIQUE, 1);
     if (file_.empty())
         return;

@@ -41,7 +41,7 @@ std::string console_manual() {
 
 The same commands work at the prompt of `meltscope run --repl`, from `--script FILE`, from a pipe and through
 `meltscope attach DIR`. They take effect at the next step. Words may be shortened to an unambiguous beginning. Quantities are
-numbers in SI units or have a unit: `85e-6`, `85um`, `85 um`. `#` begins a comment.
+numbers in SI units or have a unit: `85e-6`, `85um`, `85 um`. Quotes, "..." or '...', keep blanks together; `#` begins a comment.
 
 ## Commands
 
@@ -65,15 +65,19 @@ With several lasers the names are `laser.NAME.power` and so on.
 ## Prompt, scripts and pipes
 
 At the prompt the run waits for `run`, and again when it has reached its end. The prompt can be used while the run goes on: what
-is typed takes effect at the next step. Tab completes, arrows bring back what was typed, also in earlier sessions. Ctrl-C drops the
-line; on an empty line it pauses the run, and again stops it with a checkpoint. Ctrl-D on an empty line is `quit`.
+is typed takes effect at the next step. Tab completes, arrows bring back what was typed, also in earlier sessions (kept in
+`~/.local/state/meltscope/history`). Ctrl-C drops the line; on an empty line it pauses the run, and again stops it with a checkpoint.
+Ctrl-D on an empty line is `quit`. A terminal that goes away stops the run with a checkpoint. On a dumb terminal lines are not edited
+and Ctrl-C pauses at once.
 
 In scripts and pipes `run`, `step`, `until` and `continue` are waited for before the next line is read. After a script the run goes
 on to its end; at the end of a pipe it stops there. The first error of a script or pipe stops the run with a checkpoint; the exit
 code is 2.
 
-`meltscope attach DIR` opens a console on a run under way. One of those attached can change the run, the others look on: they see
-what is said and may use the commands that only show something. `detach` or Ctrl-D leaves the run as it is, `quit` stops it.
+`meltscope attach DIR` opens a console on a run under way, with the same prompt. The first of those attached can change the run, the
+others look on: they see what is said and may use the commands that only show something. `detach` or Ctrl-D leaves the run as it is,
+`quit` stops it. The socket in the run folder is its owner's alone. Whoever sends what is no text or more than 4096 characters in a
+line, or does not read what it is told (256 kB), is cut off; the solver never waits for a client.
 
 ## The journal
 
@@ -85,6 +89,9 @@ equals that of the run bit for bit, with any number of threads.
   moves the ends of steps: output intervals, `at`, `land`.
 - `at` is noted when it is given; when its command is carried out, a comment says so.
 - `quit` is noted as the end of the journal, and taken back when the run is taken up again.
+- A run taken up by `--restart CHECKPOINT --set KEY=VALUE` has the changes there as `adopt`, with a fingerprint of the scenario before
+  them: a replay needs the scenario that the run began with, which is the `run.toml` of its folder, and is refused under another one.
+  Under another scenario file, or with changes that name files, only the rest can be replayed, from that checkpoint.
 - `restore` puts the journal back to that of the checkpoint.
 - A checkpoint holds the journal so far, so that a run taken up from it goes on with it, with what waits, and with its pictures' settings.
 )";

@@ -13,7 +13,7 @@
 namespace meltscope {
 namespace {
 
-const std::vector<std::string> verbs{"show", "clear", "line", "dwell", "load", "append", "goto"};
+/// As path_keywords, and what only journals have.
 const std::vector<std::string> keywords{"speed", "power", "off", "format", "rows"};
 
 std::string in_mm(const Vec3& at) {
@@ -177,6 +177,16 @@ ScanPath parsed(const GivenPath& given, const Laser& laser) {
 
 } // namespace
 
+const std::vector<std::string>& path_verbs() {
+    static const std::vector<std::string> words{"show", "clear", "line", "dwell", "load", "append", "goto"};
+    return words;
+}
+
+const std::vector<std::string>& path_keywords() {
+    static const std::vector<std::string> words{"speed", "power", "off", "format"};
+    return words;
+}
+
 std::string with_path_file_inlined(const std::string& line) {
     std::vector<std::string> words = split_words(line);
     const auto reads_file = [](const std::string& word) {
@@ -194,7 +204,7 @@ std::string do_path(Call& call) {
     std::string command;
     Laser& laser = laser_of(call, command);
     const double time = call.run.simulation.time;
-    const std::string verb = arguments.empty() ? "show" : arguments.choice("path command", verbs);
+    const std::string verb = arguments.empty() ? "show" : arguments.choice("path command", path_verbs());
     command = fmt::format("{} {}", command, verb);
     if (verb == "show") {
         arguments.done();

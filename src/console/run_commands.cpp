@@ -60,7 +60,7 @@ std::string go_until(Call& call, double time) {
 
 /// Commands that must not wait: a later one would depend on files that may have changed, or never end.
 bool may_wait(const std::string& name) {
-    for (const char* no : {"at", "source", "restore", "record", "land"})
+    for (const char* no : {"at", "source", "restore", "record", "land", "adopt", "detach"})
         if (name == no)
             return false;
     return true;

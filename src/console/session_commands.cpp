@@ -1,4 +1,5 @@
 #include "meltscope/console/commands.hpp"
+#include "meltscope/console/parameters.hpp"
 
 #include <fmt/format.h>
 
@@ -63,7 +64,16 @@ std::string do_help(Call& call) {
         return help_text();
     const std::string name = call.arguments.word("the command");
     call.arguments.done();
-    return help_text(find_command(name));
+    if (name.find('.') == std::string::npos)
+        return help_text(find_command(name));
+    const Parameter parameter = find_parameter(call.run.simulation.parameters.lasers, name);
+    return fmt::format("{} = {}\n  {}\n  values: {}", parameter.name, parameter.get(call.console, call.run),
+                       parameter.help, parameter.values);
+}
+
+std::string do_detach(Call& call) {
+    call.arguments.done();
+    throw CommandError("this console is the run's own; `quit` ends both");
 }
 
 } // namespace meltscope

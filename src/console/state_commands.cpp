@@ -12,9 +12,6 @@
 namespace meltscope {
 namespace {
 
-const std::vector<std::string> layer_words{"thickness", "material", "temperature", "d10",        "d50",
-                                           "d90",       "packing",  "seed",        "homogenised"};
-
 PowderLayer read_layer(Call& call) {
     Arguments& arguments = call.arguments;
     const std::vector<Material>& materials = call.run.simulation.parameters.materials;
@@ -26,15 +23,15 @@ PowderLayer read_layer(Call& call) {
     for (const Material& material : materials)
         names.push_back(material.name);
     while (!arguments.empty()) {
-        const std::string key = arguments.choice("word of `layer`", layer_words);
-        const auto length = [&] { return arguments.quantity(key, quantity::length, layer_words); };
+        const std::string key = arguments.choice("word of `layer`", layer_keywords());
+        const auto length = [&] { return arguments.quantity(key, quantity::length, layer_keywords()); };
         if (key == "material") {
             const std::string name = arguments.choice("material", names);
             layer.material = std::int16_t(std::find(names.begin(), names.end(), name) - names.begin());
         } else if (key == "temperature") {
-            layer.temperature = arguments.quantity(key, quantity::temperature, layer_words);
+            layer.temperature = arguments.quantity(key, quantity::temperature, layer_keywords());
         } else if (key == "packing") {
-            layer.packing = arguments.quantity(key, quantity::number, layer_words);
+            layer.packing = arguments.quantity(key, quantity::number, layer_keywords());
         } else if (key == "seed") {
             layer.seed = std::uint64_t(arguments.count(key));
         } else if (key == "homogenised") {
@@ -93,6 +90,13 @@ void take_up_restored_journal(ConsoleState& console, Run& run) {
 
 } // namespace
 
+const std::vector<std::string>& layer_keywords() {
+    static const std::vector<std::string> words{"thickness", "material",   "temperature", "d10",
+                                                "d50",       "d90",        "basis",       "packing",
+                                                "seed",      "homogenised"};
+    return words;
+}
+
 std::string do_save(Call& call) {
     std::filesystem::path file = file_to_write(call);
     call.arguments.done();
@@ -112,9 +116,9 @@ std::string do_restore(Call& call) {
     const std::string file = call.arguments.word("the checkpoint");
     call.arguments.done();
     ConsoleState& console = call.console;
-    Run& run = call.run;
     if (console.from_journal)
         throw CommandError("a journal puts no checkpoint back");
+    Run& run = call.run;
     const CheckpointData data = read_checkpoint(file);
     if (data.scenario != console.host.scenario)
         throw CommandError(
@@ -139,6 +143,9 @@ std::string do_restore(Call& call) {
     console.goal = {console.goal.number + 1, std::nullopt, std::nullopt};
     if (console.host.restored)
         console.host.restored(run);
+    run.handed_out = {}; // what was written of this instant has been dropped
+    run.wanted.output = run.wanted.output || due_now(run).output;
+    run.wanted.picture = run.wanted.picture || due_now(run).picture;
     return fmt::format("back at step {}, t = {}; the journal is that of the checkpoint", run.simulation.step,
                        shown(run.simulation.time, "s"));
 }

@@ -17,7 +17,8 @@ struct CommandError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Splits a line at blanks and commas. "..." keeps blanks together (and is dropped), # begins a comment.
+/// Splits a line at blanks and commas. "..." and '...' keep blanks together (and are dropped), # begins a
+/// comment.
 /// Throws CommandError for a quote that is not closed.
 std::vector<std::string> split_words(std::string_view line);
 

@@ -12,6 +12,7 @@
 /// The client sends `meltscope 1 write|watch prompt|script`, then lines of commands. The server sends lines
 /// whose first letter says what they are: `w` what the run has to say first, `r` a line of a reply, `d` the
 /// end of the reply to a line of this client, done, `f` the same, failed, `n` news, `q` the last line.
+/// Prompts also get `c`, a kind of names and those names, for completion, and `s`, where the run is.
 namespace meltscope {
 
 /// A console that cannot be attached; the message says why.

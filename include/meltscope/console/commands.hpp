@@ -10,7 +10,7 @@
 namespace meltscope {
 
 /// What a word of a command's arguments can be, for completion.
-enum class Completes { nothing, parameter, command, file, view, field, path_verb };
+enum class Completes { nothing, parameter, command, file, view, field, laser, path_verb, layer_word };
 
 /// Whom a command concerns.
 enum class Effect {
@@ -56,11 +56,18 @@ std::string console_manual();
 struct CompletionNames {
     std::vector<std::string> parameters;
     std::vector<std::string> fields;
+    std::vector<std::string> lasers;
+    std::vector<std::string> materials;
 };
 
 /// The words that may stand at the end of `line`, which is the text before the cursor. Folders end in a
 /// slash.
 std::vector<std::string> completions(std::string_view line, const CompletionNames& names);
+
+/// Words that may follow `path`, those between its values, and those of `layer`.
+const std::vector<std::string>& path_verbs();
+const std::vector<std::string>& path_keywords();
+const std::vector<std::string>& layer_keywords();
 
 /// A waiting command as a journal keeps it: `save` and `snapshot` without their file, since a journal or a
 /// checkpoint from elsewhere must not say what is written where. Other lines as they are.
@@ -72,6 +79,14 @@ std::filesystem::path file_to_write(Call& call);
 /// A `path load` or `path append` with the rows of its file in it, for those that wait; other lines as they
 /// are.
 std::string with_path_file_inlined(const std::string& line);
+
+/// The command `adopt` that a journal holds for a run taken up with changes of its scenario, `scenario` as
+/// text, or under another one. Files that these name are not in the journal: a replay refuses them.
+std::string adoption(const std::vector<std::string>& changes, const std::filesystem::path& other_scenario,
+                     const std::string& scenario);
+
+/// Takes over what the changed scenario says of pictures, for the keys that these KEY=VALUE words name.
+void adopt_picture_settings(ConsoleState& console, const std::vector<std::string>& words);
 
 // Handlers by subject; see command_table.
 std::string do_status(Call&);
@@ -105,10 +120,12 @@ std::string do_energy(Call&);
 std::string do_save(Call&);
 std::string do_restore(Call&);
 std::string do_layer(Call&);
+std::string do_adopt(Call&);
 
 std::string do_record(Call&);
 std::string do_history(Call&);
 std::string do_source(Call&);
 std::string do_help(Call&);
+std::string do_detach(Call&);
 
 } // namespace meltscope

@@ -3,9 +3,6 @@
 #include "meltscope/console/commands.hpp"
 #include "meltscope/console/console_state.hpp"
 
-#include <atomic>
-#include <condition_variable>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -29,6 +26,8 @@ struct Speaker {
     std::function<void(const std::string& line, const Reply& reply)> answer;
 };
 
+class Voices;
+
 /// The console of a run: takes lines from any thread, carries them out on the solver's thread between steps.
 ///
 /// All lines go through one queue a speaker. The run loop calls apply() through source(); while the run is
@@ -39,6 +38,9 @@ class Console {
 
     /// `paused`: the run waits for a command before its first step.
     Console(ConsoleHost host, bool paused);
+    ~Console();
+    Console(const Console&) = delete;
+    Console& operator=(const Console&) = delete;
 
     /// Has the run do again what a journal says. Throws JournalError if the text is no journal. Before the
     /// first step.
@@ -67,36 +69,17 @@ class Console {
     std::string left_of_replay() const;
 
   private:
-    struct Line {
-        std::string text;
-        std::string place; ///< FILE:LINE, empty for people
-        bool given = true; ///< false: from a sourced file
-    };
-    struct Voice {
-        Id id = 0;
-        Speaker speaker;
-        std::deque<Line> lines;
-        int count = 0; ///< lines taken so far
-        bool finished = false;
-        std::int64_t waits_for = 0; ///< number of a goal; 0: none
-
-        /// The line that may be carried out now; lines.end() if none.
-        std::deque<Line>::iterator next_line(std::int64_t goals_reached);
-    };
-
     void apply(Run& run);
     void begin(Run& run);
     void replay_due(Run& run);
     bool interrupted(Run& run);
     bool do_next_line(Run& run);
-    void carry_out(Run& run, Id id, const Line& line);
     void retire_silent_voices(Run& run);
     bool waits_for_nobody(const Run& run) const;
     void reach_goal(Run& run);
     void tell_all(const std::string& text);
-    void tell_others(Id id, const std::string& text);
-    void tell(Id id, const std::string& line, const Reply& reply);
     void publish(const Run& run);
+    void publish_names(const Run& run);
 
     ConsoleState state_;
     bool begun_ = false;
@@ -107,12 +90,9 @@ class Console {
     std::size_t replayed_ = 0;
     std::optional<std::string> script_error_;
 
+    std::unique_ptr<Voices> voices_;
+
     mutable std::mutex mutex_; ///< for what follows
-    std::condition_variable something_new_;
-    std::vector<std::unique_ptr<Voice>> voices_;
-    Id next_id_ = 1;
-    int interrupts_ = 0;
-    bool interrupt_new_ = false;
     std::string status_;
     CompletionNames names_;
 };

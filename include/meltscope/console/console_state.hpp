@@ -41,6 +41,10 @@ struct ConsoleHost {
     std::function<void(const Run&, const std::string& view, const std::filesystem::path& png)> write_picture;
     /// Called after the run was put back to a time, s: outputs at or after it no longer hold.
     std::function<void(const Run&)> restored;
+    /// Has the run go on under its scenario with KEY=VALUE changes, as if it had been taken up so, and brings
+    /// scenario, parameters, layer and render up to date. Throws what is wrong, the run being as it was.
+    std::function<void(Run&, ConsoleHost&, const std::vector<std::string>& changes)> adopt;
+    std::string adopted; ///< under which `adopt` the run was taken up, for its journal; empty: none
     /// Why the program wants the run to stop, if it does. Asked for while the console waits.
     std::function<std::optional<std::string>()> stop_request;
 };
@@ -99,6 +103,9 @@ bool at_end_of_run(const Run& run);
 /// Takes up run.journal as a checkpoint holds it: what waits goes on waiting, what pictures show is set
 /// again. A stop that ended the run is taken back. Then writes journal.txt anew. Throws JournalError.
 void take_up_journal(ConsoleState& console, Run& run);
+
+/// Notes in the journal under which changes of its scenario the run was taken up, if any.
+void note_adoption(ConsoleState& console, Run& run);
 
 /// Carries out what has waited for the present time; the replies.
 std::vector<Reply> execute_due(ConsoleState& console, Run& run);

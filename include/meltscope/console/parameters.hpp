@@ -24,9 +24,6 @@ struct Parameter {
 /// laser.NAME.power.
 std::vector<Parameter> parameters_of(const std::vector<Laser>& lasers);
 
-/// The lasers' parameters with one or several lasers; part of parameters_of.
-std::vector<Parameter> laser_parameters(const std::vector<Laser>& lasers);
-
 /// The one that `name` means: whole, or an unambiguous beginning. laser.NAME.power is understood with one
 /// laser, too. Throws CommandError.
 Parameter find_parameter(const std::vector<Laser>& lasers, const std::string& name);

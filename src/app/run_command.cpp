@@ -9,6 +9,7 @@
 #include "stopwatch.hpp"
 #include "text.hpp"
 
+#include "meltscope/run/possible_state.hpp"
 #include "meltscope/scenario/scenario_file.hpp"
 #include "meltscope/scenario/setup.hpp"
 #include "meltscope/scenario/units.hpp"
@@ -181,11 +182,30 @@ void tell_changes(const std::vector<std::string>& changes, Terminal& terminal) {
     }
 }
 
+/// Keeps the state in which the solution has become impossible; says where.
+std::string state_kept(const Run& run, const RunOutputs& outputs) {
+    try {
+        return fmt::format("The state after that step is in {} for a look at it (meltscope info); go on from a "
+                           "checkpoint before it",
+                           outputs.keep_for_inspection(run).string());
+    } catch (const std::exception& error) {
+        return fmt::format("The state after that step could not be kept: {}", error.what());
+    }
+}
+
+RunOutcome run_or_keep_state(Run& run, const RunConnections& connections, const RunOutputs& outputs) {
+    try {
+        return run_to_end(run, connections);
+    } catch (const SolutionError& error) {
+        throw SolutionError(fmt::format("{}. {}", error.what(), state_kept(run, outputs)));
+    }
+}
+
 /// Steps the run; run.json says how it ended, whatever happens.
 RunOutcome step_through(Run& run, const RunConnections& connections, RunOutputs& outputs,
                         Terminal& terminal) {
     try {
-        return run_to_end(run, connections);
+        return run_or_keep_state(run, connections, outputs);
     } catch (const std::exception& error) {
         try {
             outputs.finish(run, "failed", error.what());

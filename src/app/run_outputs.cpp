@@ -150,6 +150,12 @@ void RunOutputs::write_checkpoint_of(const Run& run) {
     write_summary(run, "running", "");
 }
 
+std::filesystem::path RunOutputs::keep_for_inspection(const Run& run) const {
+    const auto path = paths_.inspection(run.simulation.step);
+    write_checkpoint(path, checkpoint_of(run, scenario_text_));
+    return path;
+}
+
 void RunOutputs::write_summary(const Run& run, const std::string& outcome, const std::string& message) const {
     const Simulation& simulation = run.simulation;
     const std::int64_t steps_made = simulation.step - steps_at_start_;

@@ -41,6 +41,9 @@ class RunOutputs {
     /// The run was put back to an earlier state: what lies at or after its time is dropped.
     void restored(const Run& run);
 
+    /// Writes the state that the run failed in; its file.
+    std::filesystem::path keep_for_inspection(const Run& run) const;
+
     /// Waits for the pictures, makes the movies and writes run.json for the last time. `message` says why the
     /// run stopped or failed.
     void finish(const Run& run, const std::string& outcome, const std::string& message);

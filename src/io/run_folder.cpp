@@ -108,6 +108,10 @@ fs::path RunPaths::checkpoint(std::int64_t step) const {
     return checkpoints() / fmt::format("step_{:09d}.h5", step);
 }
 
+fs::path RunPaths::inspection(std::int64_t step) const {
+    return root / fmt::format("inspect_step_{:09d}.h5", step);
+}
+
 bool is_run_output(const fs::path& relative) {
     // run.lock is not among them: it belongs to whoever holds it.
     static const std::regex pattern(
@@ -117,7 +121,7 @@ bool is_run_output(const fs::path& relative) {
         R"(|frames/[a-z][a-z0-9_]*_[0-9]{6,}\.png)"
         R"(|(overview|section|top|pool|dashboard)\.mp4)"
         R"(|plots/[a-z][a-z0-9_]*\.png)"
-        R"(|checkpoints/step_[0-9]{9,}\.h5)");
+        R"(|inspect_step_[0-9]{9,}\.h5|checkpoints/step_[0-9]{9,}\.h5)");
     return std::regex_match(relative.generic_string(), pattern);
 }
 

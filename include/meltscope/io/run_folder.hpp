@@ -41,6 +41,9 @@ struct RunPaths {
     std::filesystem::path checkpoints() const { return root / "checkpoints"; }
     /// checkpoints/step_000000500.h5
     std::filesystem::path checkpoint(std::int64_t step) const;
+    /// inspect_step_000000500.h5: the state that a failed run ended in. Not among the checkpoints, so that no
+    /// restart takes it by itself.
+    std::filesystem::path inspection(std::int64_t step) const;
 };
 
 /// A checkpoint by its name in the run folder.

@@ -49,13 +49,6 @@ double next_target(const Run& run, const std::vector<CommandSource>& commands) {
                          [&](double t) { return t == first || same_instant(t, first); });
 }
 
-Due due_now(const Run& run) {
-    const double time = run.simulation.time;
-    const std::int64_t step = run.simulation.step;
-    return {is_due(run.schedule.output, time, step), is_due(picture_cadence(run.schedule), time, step),
-            is_due(run.schedule.checkpoint, time, step)};
-}
-
 Due both(const Due& a, const Due& b) {
     return {a.output || b.output, a.picture || b.picture, a.checkpoint || b.checkpoint};
 }
@@ -116,17 +109,24 @@ Due due_at_end(const Run& run, RunOutcome outcome) {
 
 } // namespace
 
+Due due_now(const Run& run) {
+    const double time = run.simulation.time;
+    const std::int64_t step = run.simulation.step;
+    return {is_due(run.schedule.output, time, step), is_due(picture_cadence(run.schedule), time, step),
+            is_due(run.schedule.checkpoint, time, step)};
+}
+
 RunOutcome run_to_end(Run& run, const RunConnections& connections) {
     run.wall.level_set += run.simulation.seconds_in_level_set; // of setting the run up
-    Due handed = due_now(run);
-    handed.checkpoint =
+    run.handed_out = due_now(run);
+    run.handed_out.checkpoint =
         false; // the start can be had from the scenario, and a checkpoint taken up is there already
-    hand_out(run, connections.sinks, handed);
+    hand_out(run, connections.sinks, run.handed_out);
     run.hand_out_wanted = [&] {
-        const Due asked = without(run.wanted, handed);
+        const Due asked = without(run.wanted, run.handed_out);
         run.wanted = {};
         hand_out(run, connections.sinks, asked);
-        handed = both(handed, asked);
+        run.handed_out = both(run.handed_out, asked);
     };
     for (;;) {
         for (const CommandSource& source : connections.commands)
@@ -138,13 +138,13 @@ RunOutcome run_to_end(Run& run, const RunConnections& connections) {
         advance_timed(run, next_target(run, connections.commands));
         for (const auto& look : connections.after_step)
             look(run);
-        handed = due_now(run);
-        hand_out(run, connections.sinks, handed);
+        run.handed_out = due_now(run);
+        hand_out(run, connections.sinks, run.handed_out);
     }
     const RunOutcome outcome = run.simulation.time >= run.simulation.parameters.time.end ? RunOutcome::done
                                : run.stop_reason                                         ? RunOutcome::stopped
                                                  : RunOutcome::interval;
-    hand_out(run, connections.sinks, without(both(due_at_end(run, outcome), run.wanted), handed));
+    hand_out(run, connections.sinks, without(both(due_at_end(run, outcome), run.wanted), run.handed_out));
     run.wanted = {};
     run.hand_out_wanted = {};
     return outcome;

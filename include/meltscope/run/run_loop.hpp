@@ -52,6 +52,7 @@ struct Run {
     std::optional<std::int64_t> last_step;  ///< the same, at this step
     std::optional<std::string> stop_reason; ///< set by whoever wants the run to stop now, with a checkpoint
     Due wanted;                             ///< set by whoever wants an output beside the schedule, now
+    Due handed_out; ///< at the present instant so far; cleared by whoever puts the run back to another one
     /// Set by the loop: hands out what is wanted at once, for a source of commands that waits.
     std::function<void()> hand_out_wanted;
 
@@ -82,6 +83,9 @@ struct RunConnections {
     std::vector<std::function<void(const Run&)>> after_step; ///< who only looks on
     std::vector<Sink> sinks;
 };
+
+/// What the schedule asks for at the present instant.
+Due due_now(const Run& run);
 
 enum class RunOutcome {
     done,     ///< reached its end

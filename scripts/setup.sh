@@ -12,6 +12,7 @@ packages=(
   xvfb xauth libgl1-mesa-dri ffmpeg
   # to test, and to read the results with other programs
   libgtest-dev libbenchmark-dev python3-vtk9 python3-meshio python3-h5py python3-numpy python3-matplotlib
+  python3-pyte
 )
 if [[ ${1-} == --fuzz ]]; then
   packages+=(clang libclang-rt-dev libomp-dev llvm)

@@ -27,6 +27,12 @@ void watch_signals() {
     action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    struct sigaction hangup = {};
+    sigaction(SIGHUP, nullptr, &hangup);
+    if (hangup.sa_handler != SIG_IGN) { // as nohup leaves it
+        action.sa_flags = SA_RESTART;   // a terminal that goes away and its shell both send one
+        sigaction(SIGHUP, &action, nullptr);
+    }
     std::signal(SIGPIPE, SIG_IGN); // a reader of the output that goes away must not take the run along
     std::signal(SIGXFSZ, SIG_IGN); // a file too large for a quota is an error of its writer, with a name
 }

@@ -2,8 +2,9 @@
 
 namespace meltscope {
 
-/// Makes SIGINT and SIGTERM ask for a stop and SIGUSR1 for a checkpoint, both to be noticed at the next step.
-/// A second SIGINT or SIGTERM ends the program at once. SIGPIPE is ignored.
+/// Makes SIGINT, SIGTERM and, unless it is ignored (nohup), SIGHUP ask for a stop and SIGUSR1 for a
+/// checkpoint, to be noticed at the next step. A second SIGINT or SIGTERM ends the program at once. SIGPIPE
+/// is ignored.
 void watch_signals();
 
 /// The signal that asked for a stop; 0 if none has.

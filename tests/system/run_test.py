@@ -119,7 +119,7 @@ class Stops(ProgramTest):
             time.sleep(0.02)
 
     def test_signals_stop_with_a_checkpoint_and_exit_code_3(self):
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(number=number):
                 process = self.start_endless()
                 process.send_signal(number)

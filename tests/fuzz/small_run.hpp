@@ -108,12 +108,22 @@ inline void step(const ConsoleState& console, Run& run) {
         record_solidification(run.simulation, *run.solidification);
 }
 
-/// A console as new, without reading the unit database again.
+/// A console as new. Field by field: a new one reads the unit database, which takes longer than a session.
 inline void renew(ConsoleState& console, const ConsoleHost& host) {
-    Units units = std::move(console.units);
-    console.~ConsoleState();
-    new (&console) ConsoleState(host);
-    console.units = std::move(units);
+    console.host = host;
+    console.render = host.render;
+    console.running = true;
+    console.leaves = false;
+    console.goal = {};
+    console.waiting.clear();
+    console.landings.clear();
+    console.lines.clear();
+    console.recording.clear();
+    console.sourced.clear();
+    console.sourced_from.clear();
+    console.must_succeed = false;
+    console.from_journal = false;
+    console.journal_written = 0;
 }
 
 } // namespace meltscope::fuzz

@@ -229,8 +229,9 @@ void change(const fs::path& path, fuzz::Bytes& bytes) {
 
 /// As a restart does.
 void take_up(const CheckpointData& data, ConsoleState& console) {
+    static const Scenario small = fuzz::read_small();
     const Scenario scenario =
-        data.scenario == console.host.scenario ? fuzz::read_small() : read_scenario_text(data.scenario);
+        data.scenario == console.host.scenario ? small : read_scenario_text(data.scenario);
     const Estimate need = estimate(scenario);
     if (need.nodes > 50'000 || need.particles_at_most > 50'000)
         return;

@@ -218,9 +218,9 @@ ScanPath make_island(const IslandSpec& spec) {
     path.start_time = spec.raster.start_time;
     bool joined = false;
     for (const std::size_t island : order) {
-        const auto row = static_cast<double>(island / static_cast<std::size_t>(columns));
-        const auto column = static_cast<double>(island % static_cast<std::size_t>(columns));
-        const Vec2 place(column, row);
+        const auto in_row = static_cast<std::size_t>(columns);
+        const std::size_t row = island / in_row;
+        const Vec2 place(static_cast<double>(island % in_row), static_cast<double>(row));
         RasterSpec raster = spec.raster;
         raster.min = spec.raster.min + spec.island_size * place;
         raster.max = spec.raster.min + spec.island_size * (place + Vec2::Ones());

@@ -18,7 +18,7 @@ class Hdf5Handle {
     Hdf5Handle& operator=(Hdf5Handle&&) = delete;
     ~Hdf5Handle() { close(); }
 
-    operator hid_t() const { return id_; }
+    operator hid_t() const { return id_; } // NOLINT(google-explicit-constructor): HDF5 takes it everywhere
 
     /// True if closing went well, or there was nothing to close.
     bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }

@@ -170,7 +170,7 @@ void apply_override(toml::table& tree, Override change) {
         if (toml::array* list = here->as_array()) {
             const std::size_t index = element_index(*list, change, i);
             if (i == components.size()) {
-                change.value.get("value")->visit([&](auto&& value) {
+                change.value.get("value")->visit([&](auto& value) {
                     list->replace(list->cbegin() + static_cast<std::ptrdiff_t>(index), std::move(value));
                 });
                 return;
@@ -186,7 +186,7 @@ void apply_override(toml::table& tree, Override change) {
         }
         if (i + 1 == components.size()) {
             change.value.get("value")->visit(
-                [&](auto&& value) { table->insert_or_assign(components[i], std::move(value)); });
+                [&](auto& value) { table->insert_or_assign(components[i], std::move(value)); });
             return;
         }
         if (!table->contains(components[i])) {

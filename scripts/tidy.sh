@@ -1,18 +1,12 @@
 #!/usr/bin/env bash
-# Runs clang-tidy with the checks of .clang-tidy over the sources, or over the files named. tidy.sh [FILE...]
-# Reads how each file is compiled from build/release (or BUILD), which must have been configured.
+# Runs clang-tidy with the checks of .clang-tidy over all rooms. tidy.sh [ROOM...], for example: tidy.sh io console
+# Reads how they are compiled from build/asan (or BUILD), where each room is one file and headers are read once.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-build=${BUILD:-build/release}
-if [[ ! -f $build/compile_commands.json ]]; then
-  echo "tidy: there is no $build/compile_commands.json; configure that build, or name another in BUILD" >&2
-  exit 1
-fi
-files=("$@")
-if ((${#files[@]} == 0)); then
-  mapfile -t files < <(git ls-files 'src/*.cpp' 'viz/*.cpp')
-fi
-# clang does not know GCC's -Wno-maybe-uninitialized
-printf '%s\0' "${files[@]}" |
-  xargs --null --max-procs="$(nproc)" --max-args=1 \
-    clang-tidy --quiet -p "$build" --extra-arg=-Wno-unknown-warning-option
+build=${BUILD:-build/asan}
+[[ -f $build/compile_commands.json ]] || cmake --preset asan >/dev/null
+rooms=("$@")
+if ((${#rooms[@]} == 0)); then rooms=(material mpm beam build run scenario io console viz app); fi
+for room in "${rooms[@]}"; do
+  find "$build" -path '*/Unity/*' -name "unity_${room}_cxx.cxx" -print0
+done | xargs --null --max-procs="$(nproc)" --max-args=1 clang-tidy --quiet -p "$build"

@@ -29,6 +29,10 @@ void collect(const toml::node& node, const std::string& key, Values& values) {
             collect((*list)[n], fmt::format("{}[{}]", key, n), values);
         return;
     }
+    if (const auto* number = node.as_floating_point()) {
+        values[key] = fmt::format("{}", number->get()); // the shortest text, as people write it
+        return;
+    }
     std::ostringstream text;
     text << toml::toml_formatter{toml::table{{"v", node}}};
     values[key] = text.str().substr(std::string_view("v = ").size());

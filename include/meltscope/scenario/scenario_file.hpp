@@ -36,7 +36,7 @@ Material read_material(const std::filesystem::path& file);
 /// absolute. Doubles are written so that reading the text gives the same bits.
 std::string to_toml(const Scenario& scenario);
 
-/// What is different, one text a key in their order: "laser[0].power: 100.0 -> 250.0", in SI units.
+/// What is different, one text a key in their order: "laser[0].power: 100 -> 250", in SI units.
 std::vector<std::string> scenario_changes(const Scenario& from, const Scenario& to);
 
 } // namespace meltscope

@@ -18,7 +18,7 @@ TEST(ScenarioChanges, of_a_scenario_to_itself_are_none) {
 
 TEST(ScenarioChanges, name_key_old_and_new_value) {
     EXPECT_EQ(changes_to(example, {"laser.power=250 W", "checkpoint.keep=5"}),
-              (Changes{"checkpoint.keep: 3 -> 5", "laser[0].power: 100.0 -> 250.0"}));
+              (Changes{"checkpoint.keep: 3 -> 5", "laser[0].power: 100 -> 250"}));
 }
 
 TEST(ScenarioChanges, name_what_was_not_set_before) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace meltscope {
@@ -76,12 +77,30 @@ Field with_padding(const Grid& grid, const CheckpointData& data, const char* nam
     return field;
 }
 
+/// A particle that no run has: its own error, so that nobody looks for it in the solver.
+void require_possible(const CheckpointParticles& saved, std::size_t n) {
+    const auto refuse = [&](const char* what, double value) {
+        throw CheckpointError(
+            fmt::format("particle {} of the checkpoint has an impossible {}: {}", saved.id[n], what, value));
+    };
+    for (std::size_t i = 3 * n; i < 3 * n + 3; ++i)
+        if (!std::isfinite(saved.position[i]))
+            refuse("position", saved.position[i]);
+    if (!(saved.mass[n] > 0.0 && std::isfinite(saved.mass[n])))
+        refuse("mass", saved.mass[n]);
+    if (!(saved.volume[n] > 0.0 && std::isfinite(saved.volume[n])))
+        refuse("volume", saved.volume[n]);
+    if (!std::isfinite(saved.specific_energy[n]))
+        refuse("specific energy", saved.specific_energy[n]);
+}
+
 ParticleList particles_from(const CheckpointParticles& saved, std::size_t materials) {
     ParticleList list;
     const std::size_t count = saved.id.size();
     list.position.reserve(count);
     list.material.reserve(count);
     for (std::size_t n = 0; n < count; ++n) {
+        require_possible(saved, n);
         list.position.emplace_back(saved.position[3 * n], saved.position[3 * n + 1],
                                    saved.position[3 * n + 2]);
         if (saved.material[n] < 0 || std::size_t(saved.material[n]) >= materials)
@@ -179,6 +198,9 @@ CheckpointData checkpoint_of(const Run& run, const std::string& scenario) {
 
 Simulation simulation_from(const CheckpointData& data, RunParameters parameters, const Grid& grid,
                            int lattice) {
+    if (!(data.time >= 0.0 && std::isfinite(data.time)) || data.step < 0 || data.step > 1'000'000'000'000'000)
+        throw CheckpointError(fmt::format("the checkpoint is of an impossible instant: step {}, t = {} s",
+                                          data.step, data.time));
     const Field mass_energy = with_padding(grid, data, mass_energy_name, 0.0);
     ParticleList particles = particles_from(data.particles, parameters.materials.size());
     return resume_simulation(std::move(parameters), grid, std::move(particles), lattice, data.time, data.step,
@@ -187,7 +209,12 @@ Simulation simulation_from(const CheckpointData& data, RunParameters parameters,
 
 std::int64_t layers_laid_by(const CheckpointData& data) {
     const CheckpointGridArray* array = find_array(data, layers_laid_name);
-    return array && !array->values.empty() ? std::int64_t(array->values.front()) : 0;
+    if (!array || array->values.empty())
+        return 0;
+    const double laid = array->values.front();
+    if (!(laid >= 0.0 && laid <= 1e9))
+        throw CheckpointError(fmt::format("the checkpoint says that {} powder layers were laid", laid));
+    return std::int64_t(laid);
 }
 
 Solidification solidification_from(const CheckpointData& data, const Simulation& simulation) {

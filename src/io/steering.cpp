@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+#include <string_view>
+
 // An optional value is null or the value; a vector its three components.
 namespace nlohmann {
 template <class T>
@@ -55,6 +58,78 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Steering, boundary, lasers, physics, level_se
 
 namespace {
 
+/// What no scenario and no command can have led to.
+class Judge {
+  public:
+    void require(bool holds, std::string_view key, std::string_view what) const {
+        if (!holds)
+            throw SteeringError(fmt::format("the saved steering cannot be used: {} must be {}", key, what));
+    }
+    void above_zero(double value, std::string_view key) const {
+        require(value > 0.0 && std::isfinite(value), key, "above zero");
+    }
+    void not_negative(double value, std::string_view key) const {
+        require(value >= 0.0 && std::isfinite(value), key, "zero or above");
+    }
+    void between(double value, double low, double high, std::string_view key) const {
+        require(value >= low && value <= high, key, fmt::format("from {} to {}", low, high));
+    }
+
+    void judge(const FaceCondition& face) const {
+        if (face.kind == FaceCondition::Kind::fixed_temperature ||
+            face.kind == FaceCondition::Kind::convection)
+            above_zero(face.temperature, "boundary.temperature");
+        not_negative(face.coefficient, "boundary.coefficient");
+        require(std::isfinite(face.flux), "boundary.flux", "a number");
+    }
+    void judge(const Laser& laser) const {
+        not_negative(laser.power, "lasers.power");
+        between(laser.absorptivity, 0.0, 1.0, "lasers.absorptivity");
+        above_zero(laser.spot_radius, "lasers.spot_radius");
+        above_zero(laser.super_gaussian_order, "lasers.super_gaussian_order");
+        not_negative(laser.volume_depth, "lasers.volume_depth");
+        not_negative(laser.volume_width, "lasers.volume_width");
+        require(laser.profile != BeamProfile::volumetric || laser.volume_depth > 0.0, "lasers.volume_depth",
+                "above zero for a volumetric beam");
+        between(laser.direction.norm(), 1.0 - 1e-6, 1.0 + 1e-6, "the length of lasers.direction");
+        check_path(laser.path);
+        for (const Vec3& corner : laser.path.passed)
+            require(corner.allFinite(), "lasers.path.passed", "of numbers");
+    }
+    void judge(const PhysicsOptions& physics) const {
+        if (physics.blend_time)
+            above_zero(*physics.blend_time, "physics.blend_time");
+        not_negative(physics.convection, "physics.convection");
+        above_zero(physics.ambient, "physics.ambient");
+    }
+    void judge(const TimeOptions& time) const {
+        above_zero(time.end, "time.end");
+        above_zero(time.cfl, "time.cfl");
+        between(time.cfl, 0.0, 1.0, "time.cfl");
+        if (time.max_step)
+            above_zero(*time.max_step, "time.max_step");
+    }
+    void judge(const Cadence& cadence) const {
+        if (cadence.every)
+            above_zero(*cadence.every, "schedule.every");
+        require(cadence.every_steps.value_or(1) >= 1, "schedule.every_steps", "1 or more");
+    }
+    void judge(const Steering& steering) const {
+        for (const FaceCondition& face : steering.boundary)
+            judge(face);
+        for (const Laser& laser : steering.lasers)
+            judge(laser);
+        judge(steering.physics);
+        between(steering.level_set.radius, 0.5, 8.0, "level_set.radius");
+        between(steering.level_set.epsilon, 0.01, 8.0, "level_set.epsilon");
+        judge(steering.time);
+        judge(steering.schedule.output);
+        judge(steering.schedule.checkpoint);
+        if (steering.schedule.picture)
+            judge(*steering.schedule.picture);
+    }
+};
+
 json merged(const json& steered, const json& original, const json& changed) {
     if (original == changed)
         return steered;
@@ -96,9 +171,13 @@ std::string steering_text(const Steering& steering) {
 
 Steering read_steering(const std::string& text) {
     try {
-        return json::parse(text).get<Steering>();
+        const Steering steering = json::parse(text).get<Steering>();
+        Judge{}.judge(steering);
+        return steering;
     } catch (const json::exception& error) {
         throw SteeringError(fmt::format("the saved steering cannot be read: {}", error.what()));
+    } catch (const PathError& error) {
+        throw SteeringError(fmt::format("the saved steering cannot be used: {}", error.what()));
     }
 }
 

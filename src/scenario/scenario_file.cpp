@@ -213,6 +213,10 @@ void check_losses(const PhysicsSpec& physics, const Material& material, const Se
     need(physics.evaporation, material.molar_mass.has_value(), "molar_mass", "evaporation");
 }
 
+bool holds_control_character(std::string_view text) {
+    return std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+}
+
 std::vector<Material> read_materials(const Section& root, const std::vector<std::string>& from_files,
                                      const PhysicsSpec& physics) {
     if (!root.has("material")) {
@@ -221,6 +225,11 @@ std::vector<Material> read_materials(const Section& root, const std::vector<std:
     const Section section(root.context(), root.table("material"), "material");
     std::vector<Material> materials;
     for (const std::string& name : ordered_material_names(root.table("material"), from_files)) {
+        if (name.empty() || name.find('"') != std::string::npos || holds_control_character(name)) {
+            section.fail(
+                "the name of a material must be of printable characters without quotation marks, since "
+                "commands name it");
+        }
         const Section one(root.context(), section.table(name), joined_key("material", name));
         materials.push_back(read_material_section(one, name));
         check_losses(physics, materials.back(), one);
@@ -236,6 +245,9 @@ Scenario read_tree(const Section& root, const std::vector<std::string>& material
                      "level_set", "time", "output", "render", "checkpoint", "layer"});
     Scenario scenario;
     scenario.title = root.has("title") ? root.text("title") : "";
+    if (holds_control_character(scenario.title)) {
+        root.fail("title", "must be one line of printable characters: terminals and pictures show it");
+    }
     root.require("domain");
     scenario.domain = read_domain(root.section("domain", {"min", "max", "cell_size", "particles_per_cell"}));
     scenario.physics = read_physics(root);

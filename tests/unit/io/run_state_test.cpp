@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 using namespace meltscope;
 using namespace meltscope::test;
 
@@ -27,6 +29,7 @@ Steering weird_steering() {
     Steering steering;
     steering.boundary[2] = {FaceCondition::Kind::convection, 300.0, 12.5, 0.0};
     steering.lasers = {Laser{}, weird_laser()};
+    steering.lasers[0].spot_radius = 1e-5;
     steering.physics.blend_time = 1e-5 / 3.0;
     steering.physics.radiation = true;
     steering.time = {2e-3, 0.4, std::nullopt};
@@ -70,6 +73,35 @@ TEST(Steering, text_that_is_none_is_refused_by_its_key) {
     } catch (const SteeringError& error) {
         EXPECT_NE(std::string(error.what()).find("cfl"), std::string::npos);
     }
+}
+
+TEST(Steering, values_that_no_command_leads_to_are_refused_by_their_key) {
+    const auto refusal = [](auto change) {
+        Steering steering = weird_steering();
+        change(steering);
+        try {
+            read_steering(steering_text(steering));
+        } catch (const SteeringError& error) {
+            return std::string(error.what());
+        }
+        return std::string("taken");
+    };
+    const auto expect = [&](const char* key, auto change) {
+        EXPECT_NE(refusal(change).find(key), std::string::npos) << refusal(change);
+    };
+    EXPECT_EQ(refusal([](Steering&) {}), "taken");
+    expect("boundary.temperature", [](Steering& s) { s.boundary[2].temperature = -1.0; });
+    expect("lasers.power", [](Steering& s) { s.lasers[1].power = -1.0; });
+    expect("lasers.spot_radius", [](Steering& s) { s.lasers[1].spot_radius = 0.0; });
+    expect("lasers.absorptivity", [](Steering& s) { s.lasers[1].absorptivity = 2.0; });
+    expect("lasers.direction", [](Steering& s) { s.lasers[1].direction.setZero(); });
+    expect("segment", [](Steering& s) { s.lasers[1].path.segments[0].speed = -0.8; });
+    expect("time.cfl", [](Steering& s) { s.time.cfl = 0.0; });
+    expect("time.end", [](Steering& s) { s.time.end = 0.0; });
+    expect("schedule.every_steps", [](Steering& s) { s.schedule.output.every_steps = 0; });
+    expect("schedule.every", [](Steering& s) { s.schedule.picture->every = -1e-5; });
+    expect("physics.quiescent_tolerance", [](Steering& s) { s.physics.quiescent_tolerance = -1e-6; });
+    expect("level_set.radius", [](Steering& s) { s.level_set.radius = 1e9; });
 }
 
 TEST(Steering, what_the_new_scenario_changes_wins_and_what_was_steered_stays) {
@@ -122,4 +154,25 @@ TEST(RunState, a_checkpoint_that_does_not_fit_is_refused) {
     data.particles.material[3] = 0;
     data.ledger.pop_back();
     EXPECT_THROW(simulation_from(data, block_parameters(), block_grid(), 2), CheckpointError);
+}
+
+TEST(RunState, particles_and_instants_that_no_run_has_are_refused) {
+    const CheckpointData good = checkpoint_of(stepped_block(), "");
+    const auto expect_refusal = [&](auto change) {
+        CheckpointData data = good;
+        change(data);
+        EXPECT_THROW(simulation_from(data, block_parameters(), block_grid(), 2), CheckpointError);
+    };
+    EXPECT_NO_THROW(simulation_from(good, block_parameters(), block_grid(), 2));
+    const double nan = std::nan("");
+    expect_refusal([&](CheckpointData& d) { d.particles.position[7] = nan; });
+    expect_refusal([&](CheckpointData& d) { d.particles.mass[7] = 0.0; });
+    expect_refusal([&](CheckpointData& d) { d.particles.volume[7] = -1.0; });
+    expect_refusal([&](CheckpointData& d) { d.particles.specific_energy[7] = nan; });
+    expect_refusal([&](CheckpointData& d) { d.time = nan; });
+    expect_refusal([&](CheckpointData& d) { d.time = -1.0; });
+    expect_refusal([&](CheckpointData& d) { d.step = -1; });
+    CheckpointData layers = good;
+    layers.grid.push_back({"layers_laid", {1}, {nan}});
+    EXPECT_THROW(layers_laid_by(layers), CheckpointError);
 }

@@ -65,6 +65,12 @@ TEST(scenario_refusal, unknown_keys_are_refused_everywhere) {
 TEST(scenario_refusal, wrong_types_are_told_with_what_was_found) {
     expect_refusals(
         {{"title = \"example\"", "title = 5", ":1:9: title: expected text, found a number"},
+         {"title = \"example\"", "title = \"\\u001b[31m\"",
+          ":1:9: title: must be one line of printable characters"},
+         {"[material.steel]", "[material.\"ste\\nel\"]",
+          "must be of printable characters without quotation marks"},
+         {"[material.steel]", "[material.'ste\"el']",
+          "must be of printable characters without quotation marks"},
          {"cell_size = \"10 um\"", "cell_size = true",
           "domain.cell_size: expected a length (a number in m or text such as \"1.5 m\"), found true or "
           "false"},

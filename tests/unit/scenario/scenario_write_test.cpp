@@ -128,7 +128,7 @@ void expect_equal(const Scenario& a, const Scenario& b) {
 }
 
 /// Every key away from its default, and numbers that have no short decimal.
-const std::string full = R"(title = "all \"keys\" \\ \u0007 \u00b5"
+const std::string full = R"(title = "all \"keys\" \\ \u00b5"
 materials = ["materials/ss316l.toml", "materials/in625.toml"]
 
 [domain]
@@ -148,7 +148,7 @@ emissivity = 0.37
 boiling_point = 3333.3
 latent_heat_of_vaporization = 7.1e6
 molar_mass = "55.8 g/mol"
-source = 'none "at all"'
+source = "none \"at all\" \u0007\n"
 
 [[body]]
 shape = "box"

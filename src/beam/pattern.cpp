@@ -225,7 +225,7 @@ ScanPath make_island(const IslandSpec& spec) {
         raster.min = spec.raster.min + spec.island_size * place;
         raster.max = spec.raster.min + spec.island_size * (place + Vec2::Ones());
         raster.max = raster.max.cwiseMin(spec.raster.max);
-        if (std::fmod(row + column, 2.0) == 1.0) {
+        if ((row + island % in_row) % 2 == 1) {
             raster.angle += spec.island_rotation;
         }
         append_raster(path, raster, joined);

@@ -81,6 +81,8 @@ def add_color_bar(view):
     bar = simple.GetScalarBar(simple.GetColorTransferFunction("temperature"), view)
     bar.Title = "temperature (K)"
     bar.ComponentTitle = ""
+    bar.AutomaticLabelFormat = 0
+    bar.LabelFormat = bar.RangeLabelFormat = "%.0f"
     bar.Visibility = 1
 
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
 
 #include <vtkCellArray.h>
 #include <vtkPointData.h>
@@ -25,11 +27,16 @@ double length_of(const std::vector<Vec3>& corners) {
     return sum;
 }
 
-/// Lays points on the free surface below or above them, a little above it.
+/// Lays points on the free surface below or above them, a little above it. Over powder, where a line would
+/// jump from ball to ball, at the height of the highest of the points that it is made for.
 class Drape {
   public:
-    Drape(const Geometry& geometry, const Vec3& beam_direction)
-        : geometry_(geometry), vertical_(std::abs(beam_direction.z()) > 0.9) {}
+    Drape(const Geometry& geometry, const Vec3& beam_direction, const std::vector<std::vector<Vec3>>& lines)
+        : geometry_(geometry), vertical_(std::abs(beam_direction.z()) > 0.9) {
+        if (vertical_) {
+            level_rough_ground(lines);
+        }
+    }
 
     /// False beside the domain, where a path may run but nothing is to be seen.
     bool covers(const Vec3& point) const {
@@ -40,7 +47,9 @@ class Drape {
 
     Vec3 operator()(const Vec3& point) const {
         Vec3 laid = point;
-        if (vertical_) {
+        if (level_) {
+            laid.z() = *level_;
+        } else if (vertical_) {
             if (const auto height = geometry_.heights.at(point.x(), point.y())) {
                 laid.z() = *height;
             }
@@ -50,8 +59,35 @@ class Drape {
     }
 
   private:
+    void level_rough_ground(const std::vector<std::vector<Vec3>>& lines) {
+        constexpr double rough = 3.0; // cells
+        constexpr std::size_t most_looks = 4000;
+        double low = std::numeric_limits<double>::max();
+        double high = std::numeric_limits<double>::lowest();
+        for (const std::vector<Vec3>& line : lines) {
+            const double step = std::max(geometry_.nodes.spacing, length_of(line) / most_looks);
+            for (std::size_t i = 1; i < line.size(); ++i) {
+                const Vec3 along = line[i] - line[i - 1];
+                const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / step)));
+                for (int piece = 0; piece <= pieces; ++piece) {
+                    const Vec3 point = line[i - 1] + along * piece / pieces;
+                    const auto height =
+                        covers(point) ? geometry_.heights.at(point.x(), point.y()) : std::nullopt;
+                    if (height) {
+                        low = std::min(low, *height);
+                        high = std::max(high, *height);
+                    }
+                }
+            }
+        }
+        if (high - low > rough * geometry_.nodes.spacing) {
+            level_ = high;
+        }
+    }
+
     const Geometry& geometry_;
     bool vertical_;
+    std::optional<double> level_; ///< m
 };
 
 /// The path on the surface; with `dash` > 0 every other piece of that length (m), counted from the path's end
@@ -97,13 +133,16 @@ std::pair<Vec3, Vec3> across(const Vec3& direction) {
 
 std::vector<Vec3> circle(const BeamSnapshot& beam, const Geometry& geometry) {
     constexpr int corners = 72;
-    const Drape drape(geometry, beam.beam_direction);
     const auto [u, v] = across(beam.beam_direction);
     const Vec3 center = spot_center(beam, geometry);
     std::vector<Vec3> ring;
     for (int i = 0; i <= corners; ++i) {
         const double angle = 2.0 * constants::pi * i / corners;
-        ring.push_back(drape(center + beam.spot_radius * (std::cos(angle) * u + std::sin(angle) * v)));
+        ring.push_back(center + beam.spot_radius * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+    const Drape drape(geometry, beam.beam_direction, {ring});
+    for (Vec3& point : ring) {
+        point = drape(point);
     }
     return ring;
 }
@@ -231,7 +270,7 @@ void TrackActors::update(const Picture& picture, double view_size, double beam_h
     std::vector<std::vector<Vec3>> to_come;
     std::vector<std::vector<Vec3>> rings;
     for (const BeamSnapshot& beam : snapshot.beams) {
-        const Drape drape(geometry, beam.beam_direction);
+        const Drape drape(geometry, beam.beam_direction, {beam.path_done, beam.path_to_come});
         std::ranges::move(drape_path(beam.path_done, drape, step, 0.0), std::back_inserter(done));
         std::ranges::move(drape_path(beam.path_to_come, drape, std::min(step, 0.5 * dash), dash),
                           std::back_inserter(to_come));

@@ -34,34 +34,42 @@ std::string format_time(double seconds) {
                            : fmt::format("{:.1f} µs", seconds * 1e6);
 }
 
-std::string describe_beams(const Snapshot& snapshot) {
-    if (snapshot.beams.empty()) {
-        return "no laser";
+std::string describe_power(const BeamSnapshot& beam) {
+    if (!beam.on || !(beam.power > 0.0)) {
+        return "laser off";
     }
-    std::string words;
-    for (const BeamSnapshot& beam : snapshot.beams) {
-        if (!words.empty()) {
-            words += ",  ";
-        }
-        if (!beam.name.empty() && snapshot.beams.size() > 1) {
-            words += beam.name + " ";
-        }
-        const bool on = beam.on && beam.power > 0.0;
-        words += on ? fmt::format("{} W at {} m/s", three_digits(beam.power), three_digits(beam.speed))
-                    : "laser off";
-    }
-    return words;
+    return beam.speed > 0.0
+               ? fmt::format("{} W at {} m/s", three_digits(beam.power), three_digits(beam.speed))
+               : fmt::format("{} W, standing", three_digits(beam.power));
 }
 
-std::string describe_pool(const Snapshot& snapshot) {
-    if (snapshot.pools.empty() || !(snapshot.pools.front().length > 0.0)) {
-        return "no melt pool";
-    }
-    const PoolFigures& pool = snapshot.pools.front();
+std::string describe_size(const PoolFigures& pool) {
     const Scaled scale = length_unit(pool.length);
     return fmt::format("melt pool {} × {} × {} {}", three_digits(pool.length * scale.factor),
                        three_digits(pool.width * scale.factor), three_digits(pool.depth * scale.factor),
                        scale.unit);
+}
+
+/// Power, speed and pool; with several lasers those of each, unless they share one pool.
+std::string describe_beams_and_pools(const Snapshot& snapshot) {
+    const PoolFigures pool = shown_pool(snapshot);
+    const std::string size =
+        pool.length > 0.0 ? describe_size(pool) + " (length × width × depth)" : "no melt pool";
+    if (snapshot.beams.size() <= 1) {
+        return (snapshot.beams.empty() ? "no laser" : describe_power(snapshot.beams.front())) + "      " +
+               size;
+    }
+    const bool one_pool =
+        std::any_of(snapshot.separate_pools.begin(), snapshot.separate_pools.end(),
+                    [&](const SeparatePool& joined) { return joined.beams.size() == snapshot.beams.size(); });
+    std::string words;
+    for (const BeamSnapshot& beam : snapshot.beams) {
+        words += (words.empty() ? "" : "      ") + beam.name + ": " + describe_power(beam);
+        if (!one_pool && !beam.pools.empty() && beam.pools.front().length > 0.0) {
+            words += ", " + describe_size(beam.pools.front());
+        }
+    }
+    return one_pool ? words + "      one " + size : words;
 }
 
 std::string field_title(const std::string& field) {
@@ -122,20 +130,18 @@ void draw_caption(Canvas& canvas, const Picture& picture, const Rect& area) {
     style.bold = false;
     style.size = picture.font;
     style.color = picture.theme->muted;
-    const std::string pool = describe_pool(snapshot);
-    const bool molten = !snapshot.pools.empty() && snapshot.pools.front().length > 0.0;
     style.max_width = area.width;
-    canvas.text({area.x, lower},
-                fmt::format("{}      {}{}      peak {:.0f} K", describe_beams(snapshot), pool,
-                            molten ? " (length × width × depth)" : "", snapshot.peak_temperature),
-                style);
+    canvas.text(
+        {area.x, lower},
+        fmt::format("{}      peak {:.0f} K", describe_beams_and_pools(snapshot), snapshot.peak_temperature),
+        style);
 }
 
 void draw_color_bar(Canvas& canvas, const Picture& picture, const Rect& area) {
     const double font = picture.font;
     const double title_height = 1.8 * font;
     const Rect bar{area.x, area.y + 0.8 * font, 1.15 * font, area.height - title_height - 1.6 * font};
-    const auto [low, high] = picture.range;
+    const double low = picture.range[0], high = picture.range[1];
     const auto height_of = [&](double value) { return bar.y + bar.height * (value - low) / (high - low); };
 
     TextStyle style;
@@ -220,11 +226,10 @@ void draw_scale_bar(Canvas& canvas, const Picture& picture, Pixel lower_left, do
 
 void draw_heading(Canvas& canvas, const Picture& picture, const Rect& area, const std::string& words) {
     TextStyle style;
-    style.size = picture.font;
-    style.color = picture.theme->text;
-    style.vertical = Align::high;
-    style.max_width = area.width - picture.font;
-    canvas.text({area.x + 0.6 * picture.font, area.y + area.height - 0.5 * picture.font}, words, style);
+    style.size = 0.95 * picture.font;
+    style.color = picture.theme->muted;
+    style.max_width = area.width;
+    canvas.text({area.x, area.y + 0.5 * area.height}, words, style);
 }
 
 } // namespace meltscope::viz

@@ -21,7 +21,7 @@ void draw_color_bar(Canvas& canvas, const Picture& picture, const Rect& area);
 /// A horizontal bar of a round length with its label behind it; `pixels_per_metre` holds for the panel.
 void draw_scale_bar(Canvas& canvas, const Picture& picture, Pixel lower_left, double pixels_per_metre,
                     double max_pixels);
-/// A small heading in the upper left corner of a panel.
+/// A small heading at the left of an area.
 void draw_heading(Canvas& canvas, const Picture& picture, const Rect& area, const std::string& words);
 
 } // namespace meltscope::viz

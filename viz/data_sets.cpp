@@ -280,15 +280,21 @@ PoolSurfaces make_pool(const Snapshot& snapshot) {
 
     const auto surface = isosurface(nodes, phi, 0.0, true, &temperature, temperature_name);
     pool.cap = clip(surface, temperature_name, snapshot.liquidus, false);
-    if (surface->GetNumberOfCells() > 0) {
-        vtkNew<vtkContourFilter> line;
-        surface->GetPointData()->SetActiveScalars(temperature_name);
-        line->SetInputData(surface);
-        line->SetValue(0, snapshot.liquidus);
-        line->Update();
-        pool.line->ShallowCopy(line->GetOutput());
-    }
+    pool.line = line_at(surface, snapshot.liquidus);
     return pool;
+}
+
+vtkSmartPointer<vtkPolyData> line_at(vtkPolyData* surface, double temperature) {
+    auto line = empty_data_set();
+    if (surface->GetNumberOfCells() > 0) {
+        vtkNew<vtkContourFilter> contour;
+        surface->GetPointData()->SetActiveScalars(temperature_name);
+        contour->SetInputData(surface);
+        contour->SetValue(0, temperature);
+        contour->Update();
+        line->ShallowCopy(contour->GetOutput());
+    }
+    return line;
 }
 
 vtkSmartPointer<vtkPolyData> join_pool(const PoolSurfaces& pool) {

@@ -43,6 +43,9 @@ vtkSmartPointer<vtkDoubleArray> sample_onto(vtkPolyData* points, const NodeLatti
 /// Both parts carry `temperature`.
 PoolSurfaces make_pool(const Snapshot& snapshot);
 
+/// The line on a surface with `temperature` where it has that value, K.
+vtkSmartPointer<vtkPolyData> line_at(vtkPolyData* surface, double temperature);
+
 /// The two parts of the pool as one data set, with the cell array `free_surface` (1 on the cap, 0 on the
 /// isotherm).
 vtkSmartPointer<vtkPolyData> join_pool(const PoolSurfaces& pool);

@@ -61,7 +61,13 @@ struct Layout {
     Rect caption;
     Rect color_bar;
     std::vector<Rect> panels;
+    std::vector<std::pair<Rect, const char*>> headings; ///< above panels, where there are several
 };
+
+/// Pixels; zero where a view has one panel.
+double heading_height(const std::string& view, double font) {
+    return view == "dashboard" ? 1.5 * font : 0.0;
+}
 
 Layout lay_out(const std::string& view, const std::array<int, 2>& size, double font) {
     const double width = size[0];
@@ -78,16 +84,23 @@ Layout lay_out(const std::string& view, const std::array<int, 2>& size, double f
         layout.panels = {body};
         return layout;
     }
-    const double charts = 0.35 * body.height;
+    const double charts = 0.32 * body.height;
     const double right = 0.45 * body.width;
     const double upper = body.y + charts + margin;
     const double upper_height = body.height - charts - margin;
     const double column = body.x + body.width - right;
-    const double top_height = 0.40 * upper_height;
+    const double top_height = 0.53 * upper_height;
     layout.panels = {{body.x, upper, body.width - right - margin, upper_height},
                      {column, upper + upper_height - top_height, right, top_height},
                      {column, upper, right, upper_height - top_height - margin},
-                     {body.x, body.y, body.width, charts}};
+                     {body.x, body.y, body.width, charts}}; // has headings of its own
+    constexpr std::array<const char*, 3> words{"overview", "from above", "cut along the track"};
+    const double heading = heading_height(view, font);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        Rect& panel = layout.panels[i];
+        panel.height -= heading;
+        layout.headings.push_back({{panel.x, panel.y + panel.height, panel.width, heading}, words[i]});
+    }
     return layout;
 }
 
@@ -199,6 +212,7 @@ vtkSmartPointer<vtkImageData> FrameRenderer::render(const Instant& instant,
     picture.size = options.size;
     picture.font = std::max(9.0, 0.0255 * std::min<double>(options.size[1], 0.625 * options.size[0]));
     picture.line = picture.font / 10.0;
+    picture.heading = heading_height(view_name, picture.font);
     if (options.color_range) {
         picture.range = *options.color_range;
     } else {
@@ -229,6 +243,9 @@ vtkSmartPointer<vtkImageData> FrameRenderer::render(const Instant& instant,
     const Layout layout = lay_out(view_name, options.size, picture.font);
     for (std::size_t i = 0; i < shown.size(); ++i) {
         shown[i]->update(picture, layout.panels[i], impl.canvas);
+    }
+    for (const auto& [area, words] : layout.headings) {
+        draw_heading(impl.canvas, picture, area, words);
     }
     draw_caption(impl.canvas, picture, layout.caption);
     draw_color_bar(impl.canvas, picture, layout.color_bar);

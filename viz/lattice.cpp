@@ -137,6 +137,25 @@ HeightMap::HeightMap(const NodeLattice& lattice, const std::vector<double>& phi)
     }
 }
 
+HeightMap::HeightMap(const NodeLattice& lattice, vtkPolyData* surface)
+    : lattice_(lattice), height_(static_cast<std::size_t>(lattice.count[0] * lattice.count[1]),
+                                 std::numeric_limits<double>::quiet_NaN()) {
+    constexpr double near = 1e-3; // of a cell: files may be of single precision
+    for (vtkIdType n = 0; n < surface->GetNumberOfPoints(); ++n) {
+        const double* point = surface->GetPoint(n);
+        const double i = (point[0] - lattice.origin.x()) / lattice.spacing;
+        const double j = (point[1] - lattice.origin.y()) / lattice.spacing;
+        const auto column = static_cast<std::int64_t>(std::lround(i));
+        const auto row = static_cast<std::int64_t>(std::lround(j));
+        if (std::abs(i - std::round(i)) > near || std::abs(j - std::round(j)) > near || column < 0 ||
+            column >= lattice.count[0] || row < 0 || row >= lattice.count[1]) {
+            continue;
+        }
+        double& height = height_[static_cast<std::size_t>(row * lattice.count[0] + column)];
+        height = std::isnan(height) ? point[2] : std::max(height, point[2]);
+    }
+}
+
 std::optional<double> HeightMap::at(double x, double y) const {
     if (height_.empty()) {
         return std::nullopt;

@@ -9,6 +9,7 @@
 
 #include <vtkDoubleArray.h>
 #include <vtkImageData.h>
+#include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
 namespace meltscope::viz {
@@ -56,6 +57,8 @@ class HeightMap {
   public:
     HeightMap() = default;
     HeightMap(const NodeLattice& lattice, const std::vector<double>& phi);
+    /// From the surface itself, whose points lie on the edges of the lattice.
+    HeightMap(const NodeLattice& lattice, vtkPolyData* surface);
     /// Bilinear, m; nothing where there is no material.
     std::optional<double> at(double x, double y) const;
 

@@ -1,5 +1,7 @@
 #include "viz/panel.hpp"
 
+#include "viz/annotations.hpp"
+
 #include "meltscope/constants.hpp"
 
 #include <algorithm>
@@ -13,16 +15,29 @@ namespace meltscope::viz {
 HistoryPoint history_point(const Snapshot& snapshot) {
     HistoryPoint point;
     point.time = snapshot.time;
-    if (!snapshot.pools.empty()) {
-        point.length = snapshot.pools.front().length;
-        point.width = snapshot.pools.front().width;
-        point.depth = snapshot.pools.front().depth;
-    }
+    const PoolFigures pool = shown_pool(snapshot);
+    point.length = pool.length;
+    point.width = pool.width;
+    point.depth = pool.depth;
     for (const BeamSnapshot& beam : snapshot.beams) {
         point.power += beam.on ? beam.power : 0.0;
     }
     point.peak = snapshot.peak_temperature;
     return point;
+}
+
+PoolFigures shown_pool(const Snapshot& snapshot) {
+    const BeamSnapshot* beam = leading_beam(snapshot);
+    if (beam != nullptr && !beam->pools.empty() && beam->pools.front().length > 0.0) {
+        return beam->pools.front();
+    }
+    if (snapshot.pools.empty()) {
+        return {};
+    }
+    const auto largest = std::find_if(
+        snapshot.separate_pools.begin(), snapshot.separate_pools.end(),
+        [&](const SeparatePool& pool) { return pool.figures.isotherm == snapshot.pools.front().isotherm; });
+    return largest != snapshot.separate_pools.end() ? largest->figures : snapshot.pools.front();
 }
 
 const BeamSnapshot* leading_beam(const Snapshot& snapshot) {
@@ -43,19 +58,7 @@ Vec3 spot_center(const BeamSnapshot& beam, const Geometry& geometry) {
 }
 
 Vec3 track_direction(const BeamSnapshot* beam) {
-    Vec3 direction = Vec3::UnitX();
-    if (beam == nullptr) {
-        return direction;
-    }
-    Vec3 along = beam->scan_direction;
-    if (along.norm() < 0.5 && beam->path_done.size() >= 2) {
-        // While it dwells: the way it came.
-        for (std::size_t i = beam->path_done.size() - 1; i > 0 && along.norm() < 1e-12; --i) {
-            along = beam->path_done[i] - beam->path_done[i - 1];
-        }
-    }
-    along.z() = 0.0;
-    return along.norm() > 1e-12 ? Vec3(along.normalized()) : direction;
+    return beam == nullptr ? Vec3(Vec3::UnitX()) : level_direction(*beam);
 }
 
 Panel::Panel() {
@@ -79,6 +82,20 @@ void Panel::place(const Picture& picture, const Rect& area) {
     const double height = picture.size[1];
     renderer_->SetViewport(area.x / width, area.y / height, (area.x + area.width) / width,
                            (area.y + area.height) / height);
+}
+
+Rect Panel::above_scale_bar(const Picture& picture, const Rect& area) {
+    const double strip = picture.heading > 0.0 ? 0.0 : 2.2 * picture.font;
+    return {area.x, area.y + strip, area.width, area.height - strip};
+}
+
+void Panel::place_scale_bar(const Picture& picture, const Rect& area, const Pixel& in_strip,
+                            double pixels_per_metre, Canvas& canvas) {
+    Pixel left = in_strip;
+    if (picture.heading > 0.0) {
+        left = {area.x + 0.6 * area.width, area.y + area.height + 0.5 * picture.heading};
+    }
+    draw_scale_bar(canvas, picture, left, pixels_per_metre, 0.25 * area.width);
 }
 
 Pixel Panel::to_pixel(const Picture&, const Rect& area, const Vec3& point) {

@@ -27,6 +27,11 @@ class Panel {
 
   protected:
     void place(const Picture& picture, const Rect& area);
+    /// What of an area the scene gets: a scale bar that does not fit beside a heading has a strip below.
+    static Rect above_scale_bar(const Picture& picture, const Rect& area);
+    /// Puts the bar where above_scale_bar() left room, with the given left end in a strip.
+    static void place_scale_bar(const Picture& picture, const Rect& area, const Pixel& in_strip,
+                                double pixels_per_metre, Canvas& canvas);
     /// Where a point of space lies in the picture; call after the camera is set.
     Pixel to_pixel(const Picture& picture, const Rect& area, const Vec3& point);
     vtkNew<vtkRenderer> renderer_;

@@ -21,6 +21,7 @@ namespace {
 
 struct Series {
     const char* name;
+    const char* name_of_several; ///< with several lasers
     double HistoryPoint::*value;
     double factor; ///< from SI to the chart's unit
 };
@@ -115,14 +116,16 @@ class TimeChart {
     }
 
     void draw_names(const Picture& picture, const Rect& area, Canvas& canvas) const {
+        const bool several = picture.instant->snapshot->beams.size() > 1;
         TextStyle style;
         style.size = 0.9 * picture.font;
         style.vertical = Align::high;
         double x = area.x + 0.6 * picture.font;
         for (std::size_t i = 0; i < series_.size(); ++i) {
             style.color = picture.theme->series.at(i);
-            canvas.text({x, area.y + area.height - 0.3 * picture.font}, series_[i].name, style);
-            x += Canvas::extent(series_[i].name, style)[0] + picture.font;
+            const std::string name = several ? series_[i].name_of_several : series_[i].name;
+            canvas.text({x, area.y + area.height - 0.3 * picture.font}, name, style);
+            x += Canvas::extent(name, style)[0] + picture.font;
         }
     }
 
@@ -152,10 +155,11 @@ class ChartsPanel : public Panel {
     vtkNew<vtkContextActor> actor_;
     TimeChart pool_{actor_->GetScene(),
                     "µm",
-                    {{"pool length", &HistoryPoint::length, 1e6},
-                     {"width", &HistoryPoint::width, 1e6},
-                     {"depth", &HistoryPoint::depth, 1e6}}};
-    TimeChart power_{actor_->GetScene(), "W", {{"laser power", &HistoryPoint::power, 1.0}}};
+                    {{"pool length", "pool length", &HistoryPoint::length, 1e6},
+                     {"width", "width", &HistoryPoint::width, 1e6},
+                     {"depth", "depth", &HistoryPoint::depth, 1e6}}};
+    TimeChart power_{
+        actor_->GetScene(), "W", {{"laser power", "power of all lasers", &HistoryPoint::power, 1.0}}};
 };
 
 } // namespace

@@ -21,7 +21,8 @@ class OverviewPanel : public Panel {
 
         // The longer side faces the viewer.
         const Vec3 size = geometry.upper - geometry.lower;
-        track_.update(picture, size.norm(), 0.16 * size.norm());
+        const double beam_height = 0.11 * size.norm();
+        track_.update(picture, size.norm(), beam_height);
         const bool along_x = size.x() >= size.y();
         const Vec3 along = along_x ? Vec3::UnitX() : Vec3::UnitY();
         const Vec3 front = along_x ? Vec3(-Vec3::UnitY()) : Vec3::UnitX();
@@ -44,7 +45,9 @@ class OverviewPanel : public Panel {
         for (int corner = 0; corner < 8; ++corner) {
             points.emplace_back((corner & 1) != 0 ? geometry.upper.x() : geometry.lower.x(),
                                 (corner & 2) != 0 ? geometry.upper.y() : geometry.lower.y(),
-                                (corner & 4) != 0 ? geometry.upper.z() : geometry.lower.z());
+                                // Room for the beams, but for their faintest part.
+                                (corner & 4) != 0 ? geometry.upper.z() + 0.6 * beam_height
+                                                  : geometry.lower.z());
         }
         fit_camera(renderer_->GetActiveCamera(), points, -(front - 0.32 * along + 0.85 * Vec3::UnitZ()),
                    Vec3::UnitZ(), area.width / area.height);

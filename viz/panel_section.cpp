@@ -55,8 +55,7 @@ class SectionPanel : public Panel {
     }
 
     void update(const Picture& picture, const Rect& area, Canvas& canvas) override {
-        const double strip = 2.2 * picture.font;
-        const Rect scene{area.x, area.y + strip, area.width, area.height - strip};
+        const Rect scene = above_scale_bar(picture, area);
         place(picture, scene);
         const Snapshot& snapshot = *picture.instant->snapshot;
         const SectionPlane plane = track_plane(picture);
@@ -93,8 +92,7 @@ class SectionPanel : public Panel {
         }
 
         const double pixels_per_metre = scene.height / (window[3] - window[2]);
-        draw_scale_bar(canvas, picture, {scene.x, area.y + 0.7 * picture.font}, pixels_per_metre,
-                       0.25 * scene.width);
+        place_scale_bar(picture, area, {scene.x, area.y + 0.7 * picture.font}, pixels_per_metre, canvas);
         label_isotherms(picture, scene, section, levels, canvas);
     }
 

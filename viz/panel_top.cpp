@@ -1,5 +1,4 @@
 #include "viz/actors.hpp"
-#include "viz/annotations.hpp"
 #include "viz/panel.hpp"
 
 #include <algorithm>
@@ -12,9 +11,7 @@ namespace {
 class TopPanel : public Panel {
   public:
     void update(const Picture& picture, const Rect& area, Canvas& canvas) override {
-        // The scale bar has a strip of its own below the scene.
-        const double strip = 2.2 * picture.font;
-        const Rect scene{area.x, area.y + strip, area.width, area.height - strip};
+        const Rect scene = above_scale_bar(picture, area);
         place(picture, scene);
         surface_.update(picture.surface, picture);
         walls_.update(picture.walls, picture);
@@ -42,8 +39,7 @@ class TopPanel : public Panel {
         const double pixels_per_metre = scene.height / (2.0 * half_height);
         const double left = scene.x + 0.5 * (scene.width - across * pixels_per_metre);
         const double bottom = scene.y + 0.5 * (scene.height - upright * pixels_per_metre);
-        draw_scale_bar(canvas, picture, {left, bottom - 0.55 * strip}, pixels_per_metre,
-                       0.2 * across * pixels_per_metre);
+        place_scale_bar(picture, area, {left, bottom - 1.2 * picture.font}, pixels_per_metre, canvas);
     }
 
   private:

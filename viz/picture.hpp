@@ -16,7 +16,7 @@ namespace meltscope::viz {
 /// One row of the plots of the dashboard.
 struct HistoryPoint {
     double time = 0.0;   ///< s
-    double length = 0.0; ///< m, of the first pool
+    double length = 0.0; ///< m, of the pool shown
     double width = 0.0;  ///< m
     double depth = 0.0;  ///< m
     double power = 0.0;  ///< W, all beams together
@@ -39,8 +39,12 @@ struct Picture {
     std::array<int, 2> size{}; ///< pixels
     double font = 16.0;        ///< pixels, of ordinary text
     double line = 1.5;         ///< pixels, of ordinary lines
+    double heading =
+        0.0; ///< pixels above a panel that its heading takes, with room for a scale bar on the right
 };
 
+/// The pool whose size pictures tell: that of the beam they follow, else the largest; zero if there is none.
+PoolFigures shown_pool(const Snapshot& snapshot);
 /// The beam that pictures follow: the first that is on, else the first; null without any.
 const BeamSnapshot* leading_beam(const Snapshot& snapshot);
 /// Where a beam meets the material, m.

@@ -4,6 +4,7 @@
 #include "viz/file_output.hpp"
 #include "viz/frame_renderer.hpp"
 #include "viz/movie.hpp"
+#include "viz/saved_instant.hpp"
 #include "viz/vtk_errors.hpp"
 
 #include <algorithm>
@@ -55,6 +56,7 @@ class Pipeline::Worker {
 
     void resume_at(double time);
     void submit(std::shared_ptr<const Snapshot> snapshot, bool render, bool files);
+    void submit_saved(std::shared_ptr<const Snapshot> head, std::filesystem::path surface_file);
     void write_image(std::shared_ptr<const Snapshot> snapshot, const std::string& view,
                      const std::filesystem::path& png);
     void wait_for_earlier_than(double time);
@@ -88,6 +90,8 @@ class Pipeline::Worker {
         std::shared_ptr<const Snapshot> snapshot;
         bool render = false;
         bool files = false;
+        std::filesystem::path
+            surface_file; ///< what the picture is made from instead of the snapshot's fields
         std::optional<Single> single;
         RenderOptions options; ///< as they were when it was queued
         std::vector<HistoryPoint> history;
@@ -178,6 +182,17 @@ void Pipeline::Worker::submit(std::shared_ptr<const Snapshot> snapshot, bool ren
     job.snapshot = std::move(snapshot);
     job.render = render;
     job.files = files;
+    enqueue(std::move(job), lock);
+}
+
+void Pipeline::Worker::submit_saved(std::shared_ptr<const Snapshot> head,
+                                    std::filesystem::path surface_file) {
+    std::unique_lock lock(mutex_);
+    record_history(*head);
+    Job job;
+    job.snapshot = std::move(head);
+    job.surface_file = std::move(surface_file);
+    job.render = true;
     enqueue(std::move(job), lock);
 }
 
@@ -309,7 +324,8 @@ void Pipeline::Worker::process(Job& job) {
     bool prepared = false;
     const auto prepare = [&] {
         if (!prepared) {
-            instant = make_instant(job.snapshot, geometry_);
+            instant = job.surface_file.empty() ? make_instant(job.snapshot, geometry_)
+                                               : read_surface_file(job.surface_file, *job.snapshot);
             prepared = true;
         }
     };
@@ -414,6 +430,10 @@ void Pipeline::resume_at(double time) {
 
 void Pipeline::submit(std::shared_ptr<const Snapshot> snapshot, bool render, bool files) {
     worker_->submit(std::move(snapshot), render, files);
+}
+
+void Pipeline::submit_saved(std::shared_ptr<const Snapshot> head, std::filesystem::path surface_file) {
+    worker_->submit_saved(std::move(head), std::move(surface_file));
 }
 
 void Pipeline::write_image(std::shared_ptr<const Snapshot> snapshot, const std::string& view,

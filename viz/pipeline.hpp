@@ -62,6 +62,10 @@ class Pipeline {
     /// or (OnFull::drop) gives up the pictures; data files are never dropped.
     void submit(std::shared_ptr<const Snapshot> snapshot, bool render, bool files);
 
+    /// Queues pictures from the files of an earlier run: from the free surface alone, of views_of_surfaces();
+    /// `head` is a snapshot without fields. Never dropped.
+    void submit_saved(std::shared_ptr<const Snapshot> head, std::filesystem::path surface_file);
+
     /// Makes one picture outside the run's numbering and waits for it. Throws VizError if it cannot be made.
     void write_image(std::shared_ptr<const Snapshot> snapshot, const std::string& view,
                      const std::filesystem::path& png);

@@ -92,6 +92,10 @@ void PvdCollection::drop_from(double time) {
 }
 
 void PvdCollection::append(double time, const std::string& file) {
+    // Files that somebody has removed meanwhile would make readers fail.
+    std::erase_if(entries_, [this](const Entry& entry) {
+        return !std::filesystem::exists(path_.parent_path() / entry.file);
+    });
     entries_.push_back({time, file});
     write();
 }

@@ -20,7 +20,8 @@ class PvdCollection {
     void load();
     /// Takes out the entries at or after that time and writes the file anew.
     void drop_from(double time);
-    /// Adds an entry and writes the file anew. Throws VizError if that fails.
+    /// Adds an entry, takes out those whose files are gone, and writes the file anew. Throws VizError if that
+    /// fails.
     void append(double time, const std::string& file);
 
     const std::vector<Entry>& entries() const { return entries_; }

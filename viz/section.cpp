@@ -143,11 +143,10 @@ void PoolExtent::update(const Picture& picture) {
     length = std::max(length, 4.0 * spot);
     width = std::max(width, 2.0 * spot);
     depth = std::max(depth, spot);
-    if (!snapshot.pools.empty()) {
-        length = std::max(length, snapshot.pools.front().length);
-        width = std::max(width, snapshot.pools.front().width);
-        depth = std::max(depth, snapshot.pools.front().depth);
-    }
+    const PoolFigures pool = shown_pool(snapshot);
+    length = std::max(length, pool.length);
+    width = std::max(width, pool.width);
+    depth = std::max(depth, pool.depth);
 }
 
 } // namespace meltscope::viz

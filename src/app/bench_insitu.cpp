@@ -46,6 +46,19 @@ void wait_for_outputs(const viz::Pipeline& pipeline, std::int64_t outputs) {
     }
 }
 
+/// Of one picture from a snapshot to its file, the solver at rest: median of a few.
+double seconds_of_view(viz::Pipeline& pipeline, const std::shared_ptr<const Snapshot>& snapshot,
+                       const std::string& view, const std::filesystem::path& folder) {
+    std::vector<double> seconds;
+    pipeline.write_image(snapshot, view, folder / "first.png"); // opens the view: once a run
+    for (int turn = 0; turn < turns; ++turn) {
+        const Stopwatch watch;
+        pipeline.write_image(snapshot, view, folder / "picture.png");
+        seconds.push_back(watch.seconds());
+    }
+    return median(seconds);
+}
+
 } // namespace
 
 InSituCost measure_insitu_cost(Simulation& simulation) {
@@ -57,10 +70,13 @@ InSituCost measure_insitu_cost(Simulation& simulation) {
     viz::Pipeline pipeline(files, render, viz::Backend::automatic, {}, [](const std::string&) {});
 
     std::int64_t outputs = 0;
+    std::vector<double> snapshots;
     const auto output = [&] {
-        pipeline.submit(
-            std::make_shared<const Snapshot>(take_snapshot(simulation, ParticleSelection::surface)), true,
-            true);
+        const Stopwatch watch;
+        auto snapshot =
+            std::make_shared<const Snapshot>(take_snapshot(simulation, ParticleSelection::surface));
+        snapshots.push_back(watch.seconds());
+        pipeline.submit(std::move(snapshot), true, true);
         ++outputs;
     };
     const auto step = [&] {
@@ -82,10 +98,14 @@ InSituCost measure_insitu_cost(Simulation& simulation) {
         wait_for_outputs(pipeline, outputs);
         with.push_back(accompanied.seconds());
     }
-    pipeline.finish();
     const viz::PipelineStats stats = pipeline.stats();
-    require_no_failure(stats);
     InSituCost cost;
+    const auto last = std::make_shared<const Snapshot>(take_snapshot(simulation, ParticleSelection::none));
+    cost.overview_seconds = seconds_of_view(pipeline, last, "overview", folder.path);
+    cost.dashboard_seconds = seconds_of_view(pipeline, last, "dashboard", folder.path);
+    pipeline.finish();
+    require_no_failure(pipeline.stats());
+    cost.snapshot_seconds = median(snapshots);
     cost.steps = steps_between_outputs;
     cost.without_seconds = median(without);
     cost.with_seconds = median(with);

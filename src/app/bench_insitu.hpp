@@ -12,8 +12,11 @@ struct InSituCost {
     double without_seconds = 0.0; ///< for so many steps, median
     double with_seconds = 0.0;    ///< the same with an output at their start, written whole before the end
     std::int64_t frames = 0, files = 0;
-    double render_seconds = 0.0; ///< of one picture, on average
-    double file_seconds = 0.0;   ///< of one output's data files, on average
+    double snapshot_seconds = 0.0;  ///< of making a snapshot, which the solver waits for, median
+    double render_seconds = 0.0;    ///< of one picture beside the solver, on average
+    double file_seconds = 0.0;      ///< of one output's data files beside the solver, on average
+    double overview_seconds = 0.0;  ///< of one overview picture while the solver rests, median
+    double dashboard_seconds = 0.0; ///< of one dashboard, the same
 
     double ratio() const { return with_seconds / without_seconds; }
 };

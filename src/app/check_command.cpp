@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "disk_need.hpp"
 #include "exit_codes.hpp"
 #include "machine.hpp"
 #include "run_setup.hpp"
@@ -50,12 +51,27 @@ double seconds_per_step(Simulation& simulation) {
     return median(seconds);
 }
 
+/// Lays the layers of powder, which would come in the course of the run: whether they can be packed and fit
+/// shows only then.
+void lay_layers(PreparedRun& prepared) {
+    Run& run = prepared.run;
+    const CommandSource layers = scheduled_layers(prepared.scenario.layers);
+    for (double time = layers.next_time(run); time != never; time = layers.next_time(run)) {
+        const std::int64_t before = run.simulation.particles.count();
+        run.simulation.time = time;
+        layers.apply(run);
+        print(fmt::format("# layer      at t = {}: {} particles", in_si(time, "s"),
+                          run.simulation.particles.count() - before));
+    }
+}
+
 int execute(const CheckRequest& request) {
     InputOfRun input = read_input(request.scenario, {}, request.overrides);
     const std::string resolved = to_toml(input.scenario);
     const double bytes = estimate(input.scenario).bytes;
     PreparedRun prepared = prepare_run(std::move(input));
     Simulation& simulation = prepared.run.simulation;
+    const std::string disk = in_words(disk_need(prepared, true));
 
     print(resolved);
     const double end = simulation.parameters.time.end;
@@ -67,11 +83,15 @@ int execute(const CheckRequest& request) {
     print(fmt::format("# memory     {:.2f} GB, of {:.2f} GB there are", std::max(bytes, peak_memory()) * 1e-9,
                       physical_memory() * 1e-9));
     print(fmt::format("# dt         {}, with molten material", in_si(dt, "s")));
+    print("# disk       " + disk);
     print(fmt::format("# steps      about {:.0f} to t = {}", steps, in_si(end, "s")));
     print(fmt::format(
         "# time       about {} at {:.1f} M particle-steps/s as measured just now, outputs and pictures "
         "not counted",
         clock_time(steps * step_seconds), 1e-6 * double(simulation.particles.count()) / step_seconds));
+    lay_layers(prepared);
+    for (const std::string& note : scenario_notes(prepared.scenario))
+        print("# note       " + note);
     return exit_code::done;
 }
 

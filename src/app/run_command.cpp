@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "disk_need.hpp"
 #include "exit_codes.hpp"
 #include "machine.hpp"
 #include "run_console.hpp"
@@ -142,22 +143,9 @@ void describe(const PreparedRun& prepared, const std::filesystem::path& folder, 
 }
 
 void print_ledger(const Ledger& ledger, Terminal& terminal) {
-    const auto line = [&](const char* name, double energy) {
-        if (energy != 0.0)
-            terminal.say(fmt::format("  {:<30} {:>13.6g} J", name, energy));
-    };
     terminal.say("Energy ledger");
-    line("emitted by the lasers", ledger.emitted);
-    line("missed the material", ledger.missed);
-    line("reflected", ledger.reflected);
-    line("absorbed", ledger.absorbed);
-    line("flowed in through faces", ledger.face_flux_in);
-    line("added with particles", ledger.added);
-    line("radiated", ledger.radiated);
-    line("convected", ledger.convected);
-    line("evaporated", ledger.evaporated);
-    line("conducted out through faces", ledger.conducted_out);
-    line("change of what is stored", ledger.stored - ledger.stored_at_start);
+    for (const auto& [words, energy] : in_words(ledger))
+        terminal.say(fmt::format("  {:<30} {:>13.6g} J", words, energy));
     terminal.say(fmt::format("  {:<30} {:>13.1e}", "relative residual", ledger.relative_residual()));
 }
 
@@ -171,6 +159,19 @@ void print_phases(const Run& run, std::int64_t steps, Terminal& terminal) {
         terminal.say(fmt::format(
             "{} steps in {:.1f} s, {:.1f} M particle-steps/s", steps, wall.solver + wall.level_set,
             1e-6 * double(steps) * double(run.simulation.particles.count()) / wall.solver));
+}
+
+/// Says what the run will put on the disk, and warns if there is less room.
+void tell_disk_need(const PreparedRun& prepared, const std::filesystem::path& folder, bool draws,
+                    Terminal& terminal) {
+    const DiskNeed need = disk_need(prepared, draws);
+    const double room = free_disk(folder);
+    terminal.say(in_words(need));
+    if (room >= 0.0 && need.sum() > room)
+        terminal.warn(fmt::format("the disk may be too small, {} are free where {} are needed: fewer outputs "
+                                  "(output.every), fewer particles in them or "
+                                  "output.compression = \"lz4\" need less",
+                                  in_si(room, "B"), in_si(need.sum(), "B")));
 }
 
 /// Says what is different from the scenario that a checkpoint was made under.
@@ -260,6 +261,7 @@ int execute(const RunRequest& request) {
 
     for (const std::string& note : scenario_notes(prepared.scenario))
         terminal.note(note);
+    tell_disk_need(prepared, folder.path, backend != viz::Backend::none, terminal);
     RunOutputs outputs(claim.paths(), prepared, backend, threads, terminal);
     StepWatch watch(terminal, outputs);
     RunConsole console(request.steering, claim.paths(), prepared, outputs, terminal,
@@ -268,6 +270,7 @@ int execute(const RunRequest& request) {
     connections.commands.push_back(scheduled_layers(prepared.scenario.layers));
     connections.commands.push_back(stops(since_start, wall_limit, terminal));
     connections.commands.push_back(console.source());
+    connections.after_step.push_back([&](const Run& r) { outputs.after_step(r); });
     connections.after_step.push_back([&](const Run& r) { watch.after_step(r); });
     connections.sinks = outputs.sinks();
     connections.sinks.push_back(watch.sink());
@@ -337,8 +340,8 @@ void add_run(CLI::App& program, Action& chosen) {
     auto* quiet = run->add_flag("-q,--quiet", request->quiet, "Warnings and errors only");
     run->add_flag("-v,--verbose", request->verbose, "Show all that goes into log.txt")->excludes(quiet);
     run->footer(
-        "SIGINT (Ctrl-C) and SIGTERM stop at the next step with a checkpoint (exit code 3), SIGUSR1 makes a\n"
-        "checkpoint and goes on.\n"
+        "SIGINT (Ctrl-C), SIGTERM and SIGHUP stop at the next step with a checkpoint (exit code 3), SIGUSR1\n"
+        "makes a checkpoint and goes on.\n"
         "Examples:\n"
         "  meltscope run scenarios/quick_look.toml\n"
         "  meltscope run scenarios/quick_look.toml --set \"laser.power=200 W\" --set \"checkpoint.every=0.1 "

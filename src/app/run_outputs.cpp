@@ -18,33 +18,6 @@
 namespace meltscope {
 namespace {
 
-viz::FileOptions file_options(const RunPaths& paths, const OutputSpec& output) {
-    viz::FileOptions options;
-    options.run_dir = paths.root;
-    options.surface = output.surface;
-    options.pool = output.pool;
-    options.grid = output.grid;
-    options.particles = output.particles != OutputSpec::Particles::none;
-    options.compression = output.compression == OutputSpec::Compression::lz4    ? viz::Compression::lz4
-                          : output.compression == OutputSpec::Compression::zlib ? viz::Compression::zlib
-                                                                                : viz::Compression::none;
-    options.precision = output.precision == OutputSpec::Precision::float64 ? viz::Precision::float64
-                                                                           : viz::Precision::float32;
-    return options;
-}
-
-viz::RenderOptions render_options(const RunPaths& paths, const RenderSpec& render) {
-    viz::RenderOptions options;
-    options.run_dir = paths.root;
-    options.size = render.size;
-    options.views = render.views;
-    options.color_range = render.color_range;
-    options.colormap = render.colormap;
-    options.background =
-        render.background == RenderSpec::Background::light ? viz::Background::light : viz::Background::dark;
-    return options;
-}
-
 viz::BacklogPolicy backlog_policy(const RenderSpec& render) {
     viz::BacklogPolicy policy;
     policy.on_full = render.on_backlog == RenderSpec::OnBacklog::drop ? viz::BacklogPolicy::OnFull::drop
@@ -53,6 +26,34 @@ viz::BacklogPolicy backlog_policy(const RenderSpec& render) {
 }
 
 } // namespace
+
+viz::FileOptions file_options(const std::filesystem::path& folder, const OutputSpec& output) {
+    viz::FileOptions options;
+    options.run_dir = folder;
+    options.surface = output.surface;
+    options.pool = output.pool;
+    options.grid = output.grid;
+    options.particles = output.particles != OutputSpec::Particles::none;
+    options.particles_as_vtu = output.particles_format == OutputSpec::ParticlesFormat::vtu;
+    options.compression = output.compression == OutputSpec::Compression::lz4    ? viz::Compression::lz4
+                          : output.compression == OutputSpec::Compression::zlib ? viz::Compression::zlib
+                                                                                : viz::Compression::none;
+    options.precision = output.precision == OutputSpec::Precision::float64 ? viz::Precision::float64
+                                                                           : viz::Precision::float32;
+    return options;
+}
+
+viz::RenderOptions render_options(const std::filesystem::path& folder, const RenderSpec& render) {
+    viz::RenderOptions options;
+    options.run_dir = folder;
+    options.size = render.size;
+    options.views = render.views;
+    options.color_range = render.color_range;
+    options.colormap = render.colormap;
+    options.background =
+        render.background == RenderSpec::Background::light ? viz::Background::light : viz::Background::dark;
+    return options;
+}
 
 std::int64_t count_pictures(const RunPaths& paths, const std::string& view) {
     std::int64_t count = 0;
@@ -78,14 +79,22 @@ RunOutputs::RunOutputs(RunPaths paths, const PreparedRun& prepared, viz::Backend
       draws_(backend != viz::Backend::none && !prepared.scenario.render.views.empty()), threads_(threads),
       terminal_(terminal), backend_(backend), steps_at_start_(prepared.run.simulation.step) {
     open_files(prepared.run, prepared.resumed_at);
-    write_file_atomically(paths_.scenario(), scenario_text_);
+    if (!prepared.resumed_at || !std::filesystem::exists(paths_.scenario()))
+        write_file_atomically(paths_.scenario(), scenario_text_);
     write_summary(prepared.run, "running", "");
 }
 
 void RunOutputs::open_files(const Run& run, std::optional<double> resume_at) {
-    table_.emplace(paths_.melt_pool_table(), run.simulation.parameters.isotherms, resume_at);
+    std::vector<std::string> lasers;
+    for (const Laser& laser : run.simulation.parameters.lasers)
+        lasers.push_back(laser.name);
+    table_.emplace(paths_.melt_pool_table(), run.simulation.parameters.isotherms, lasers, resume_at);
+    pools_table_.emplace(paths_.separate_pools_table(), resume_at);
+    table_time_ = -1.0;
+    if (resume_at)
+        after_step(run); // the row of this instant has been dropped
     pipeline_.emplace(
-        file_options(paths_, scenario_.output), render_options(paths_, scenario_.render), backend_,
+        file_options(paths_.root, scenario_.output), render_options(paths_.root, scenario_.render), backend_,
         backlog_policy(scenario_.render), [this](const std::string& text) { terminal_.warn(text); },
         [this](const std::string& text) { terminal_.note(text); });
     if (!resume_at)
@@ -108,6 +117,10 @@ void RunOutputs::write_picture(const Run& run, const std::string& view, const st
         std::make_shared<const Snapshot>(take_snapshot(run.simulation, ParticleSelection::none)), view, png);
 }
 
+void RunOutputs::scenario_changed() {
+    scenario_text_ = to_toml(scenario_);
+}
+
 void RunOutputs::restored(const Run& run) {
     const viz::RenderOptions shown = pipeline_->render_options();
     pipeline_->finish();
@@ -119,15 +132,40 @@ void RunOutputs::restored(const Run& run) {
     pipeline_->set_background(shown.background);
 }
 
+void RunOutputs::require_folder() {
+    if (std::filesystem::exists(paths_.scenario()))
+        return;
+    terminal_.warn(
+        fmt::format("the run folder {} was removed during the run; it is made again, what was in it "
+                    "is lost",
+                    paths_.root.string()));
+    std::filesystem::create_directories(paths_.root);
+    write_file_atomically(paths_.scenario(), scenario_text_);
+}
+
+void RunOutputs::add_row(const Snapshot& snapshot) {
+    if (snapshot.time == table_time_)
+        return; // as the row of its step
+    table_->append(snapshot);
+    pools_table_->append(snapshot);
+    table_time_ = snapshot.time;
+}
+
+void RunOutputs::after_step(const Run& run) {
+    if (scenario_.output.pool_rows == OutputSpec::PoolRows::step)
+        add_row(take_snapshot(run.simulation, ParticleSelection::none));
+}
+
 std::vector<Sink> RunOutputs::sinks() {
     const auto pictures_and_files = [this](const Run&, const Due& due,
                                            const std::shared_ptr<const Snapshot>& snapshot) {
+        require_folder();
         pipeline_->submit(snapshot, due.picture && draws_, due.output);
     };
     const auto table = [this](const Run&, const Due& due, const std::shared_ptr<const Snapshot>& snapshot) {
         pool_ = pool_size(*snapshot);
         if (due.output)
-            table_->append(*snapshot);
+            add_row(*snapshot);
     };
     const auto checkpoints = [this](const Run& run, const Due& due, const std::shared_ptr<const Snapshot>&) {
         if (due.checkpoint)
@@ -224,6 +262,7 @@ std::vector<std::string> RunOutputs::list() const {
     for (const char* series : {"particles", "surface", "pool", "grid"})
         add("for ParaView", paths_.collection(series));
     add("melt-pool table", paths_.melt_pool_table());
+    add("separate pools", paths_.separate_pools_table());
     add("solidification", paths_.solidification_table());
     add("solidification", paths_.solidification_points());
     if (last_checkpoint_)

@@ -19,13 +19,16 @@ namespace meltscope {
 /// end.
 class RunOutputs {
   public:
-    /// The folder is there and locked. Writes run.toml and run.json; for a run taken up from a checkpoint,
-    /// goes on with the files there.
+    /// The folder is there and locked. Writes run.toml and run.json. A run taken up from a checkpoint goes on
+    /// with the files there; run.toml stays the scenario that it began with, from which its journal goes on.
     RunOutputs(RunPaths paths, const PreparedRun& prepared, viz::Backend backend, int threads,
                Terminal& terminal);
 
     /// Sinks for pictures and files, the melt-pool table and checkpoints.
     std::vector<Sink> sinks();
+
+    /// Appends to the melt-pool tables after a step, if the scenario asks for a row a step.
+    void after_step(const Run& run);
 
     /// The pool's size at the last output, for the progress line; empty if nothing is molten.
     const std::string& pool() const { return pool_; }
@@ -37,6 +40,10 @@ class RunOutputs {
 
     /// Makes one picture now, outside the run's numbering. Throws viz::VizError.
     void write_picture(const Run& run, const std::string& view, const std::filesystem::path& png);
+
+    /// The scenario was changed while the run is under way: checkpoints hold the new one. Files keep their
+    /// form.
+    void scenario_changed();
 
     /// The run was put back to an earlier state: what lies at or after its time is dropped.
     void restored(const Run& run);
@@ -54,6 +61,8 @@ class RunOutputs {
   private:
     void write_summary(const Run& run, const std::string& outcome, const std::string& message) const;
     void write_checkpoint_of(const Run& run);
+    void add_row(const Snapshot& snapshot);
+    void require_folder();
     void open_files(const Run& run, std::optional<double> resume_at);
     void make_movies();
 
@@ -64,13 +73,22 @@ class RunOutputs {
     int threads_;
     Terminal& terminal_;
     viz::Backend backend_;
-    std::optional<MeltPoolTable> table_;    ///< always there; made anew when the run is put back
-    std::optional<viz::Pipeline> pipeline_; ///< the same
+    // Always there; made anew when the run is put back.
+    std::optional<MeltPoolTable> table_;
+    std::optional<SeparatePoolsTable> pools_table_;
+    std::optional<viz::Pipeline> pipeline_;
+    double table_time_ = -1.0; ///< s, of the last row
     std::string pool_;
     std::int64_t steps_at_start_;
     std::optional<std::filesystem::path> last_checkpoint_;
     Stopwatch since_start_;
 };
+
+/// The pictures that a scenario asks for, into that folder.
+viz::RenderOptions render_options(const std::filesystem::path& folder, const RenderSpec& render);
+
+/// The data files that a scenario asks for.
+viz::FileOptions file_options(const std::filesystem::path& folder, const OutputSpec& output);
 
 /// How many pictures of a view a run folder holds.
 std::int64_t count_pictures(const RunPaths& paths, const std::string& view);

@@ -17,6 +17,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <regex>
 
 namespace meltscope {
 namespace {
@@ -40,7 +41,7 @@ h2 { font-size: 1.2rem; margin: 2.4rem 0 .8rem; padding-bottom: .3rem; border-bo
 .facts div { background: var(--card); border: 1px solid var(--rule); border-radius: 8px; padding: .6rem .9rem; }
 .facts b { display: block; font-size: 1.15rem; font-variant-numeric: tabular-nums; }
 .facts span { color: var(--soft); font-size: .85rem; }
-video, img { display: block; width: 100%; border-radius: 8px; background: #000; }
+video, img { display: block; margin-bottom: 1rem; width: 100%; border-radius: 8px; background: #000; }
 .plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1rem; }
 figure { margin: 0; background: var(--card); border: 1px solid var(--rule); border-radius: 8px; padding: .8rem; }
 figcaption { font-weight: 600; margin: 0 0 .4rem .2rem; }
@@ -153,22 +154,24 @@ std::string middle_picture(const RunPaths& paths, const std::string& view, const
     return picture ? data_url("image/png", *picture) : "";
 }
 
-/// The movie of the overview or of the first view that has one; else a picture; else nothing.
-std::string moving_picture(const RunPaths& paths, const Warn& warn) {
+/// The movies of all views, the overview's first; without any a picture; else nothing.
+std::string moving_pictures(const RunPaths& paths, const Warn& warn) {
+    std::string html;
     const std::vector<std::string>& views = viz::view_names(); // the overview is the first
     for (const std::string& view : views) {
         const auto movie = read_if_there(paths.movie(view), warn);
         if (!movie)
             continue;
         const std::string poster = middle_picture(paths, view, warn);
-        return fmt::format("<video controls loop muted playsinline aria-label=\"{}\"{} src=\"{}\"></video>",
-                           view, poster.empty() ? "" : fmt::format(" poster=\"{}\"", poster),
-                           data_url("video/mp4", *movie));
+        html += fmt::format(
+            "<video controls loop muted playsinline aria-label=\"{}\"{} src=\"{}\"></video>\n", view,
+            poster.empty() ? "" : fmt::format(" poster=\"{}\"", poster), data_url("video/mp4", *movie));
     }
     for (const std::string& view : views)
-        if (const std::string picture = middle_picture(paths, view, warn); !picture.empty())
-            return fmt::format("<img alt=\"{}\" src=\"{}\">", view, picture);
-    return {};
+        if (const std::string picture = html.empty() ? middle_picture(paths, view, warn) : "";
+            !picture.empty())
+            html = fmt::format("<img alt=\"{}\" src=\"{}\">\n", view, picture);
+    return html;
 }
 
 /// Rate of change by central differences, at the ends by one-sided ones.
@@ -199,19 +202,16 @@ class PoolPlots {
         blank_.x_label = milli ? "time (ms)" : "time (µs)";
     }
 
-    /// A column, and those of further isotherms, times a factor.
-    std::string of_pool(const char* title, const std::string& column, const char* unit, double factor) const {
+    /// A column, and those of further isotherms and lasers, times a factor.
+    std::string of_column(const char* title, const std::string& column, const char* unit, double factor,
+                          bool of_isotherms) const {
         LinePlot plot = blank_;
         plot.title = title;
         plot.y_label = unit;
-        for (std::size_t n = 0; n < table_.names.size(); ++n) {
-            const std::string& name = table_.names[n];
-            if (name == column)
-                plot.curves.push_back({first_isotherm(), scaled(table_.columns[n], factor)});
-            else if (name.starts_with(column + "_") && name.ends_with("K"))
-                plot.curves.push_back({name.substr(column.size() + 1, name.size() - column.size() - 2) + " K",
+        for (std::size_t n = 0; n < table_.names.size(); ++n)
+            if (table_.names[n] == column || table_.names[n].starts_with(column + "_"))
+                plot.curves.push_back({name_of(table_.names[n].substr(column.size()), of_isotherms),
                                        scaled(table_.columns[n], factor)});
-        }
         return figure_of(plot);
     }
 
@@ -251,10 +251,24 @@ class PoolPlots {
     }
 
   private:
-    std::string first_isotherm() const {
-        return scenario_ && !scenario_->output.isotherms.empty()
-                   ? fmt::format("{:.7g} K", scenario_->output.isotherms.front())
-                   : "first isotherm";
+    /// What a column's suffix (`_1563K_right`) stands for; the first isotherm and the first laser have none.
+    std::string name_of(const std::string& suffix, bool of_isotherms) const {
+        static const std::regex form("(?:_([0-9.e+]+)K)?(?:_(.+))?");
+        std::smatch parts;
+        std::string isotherm = "first isotherm", laser;
+        if (scenario_ && !scenario_->output.isotherms.empty())
+            isotherm = fmt::format("{:.7g} K", scenario_->output.isotherms.front());
+        if (scenario_ && scenario_->lasers.size() > 1)
+            laser = scenario_->lasers.front().name;
+        if (std::regex_match(suffix, parts, form)) {
+            if (parts[1].matched)
+                isotherm = parts[1].str() + " K";
+            if (parts[2].matched)
+                laser = parts[2].str();
+        }
+        if (!of_isotherms)
+            return laser.empty() ? "power" : laser;
+        return laser.empty() ? isotherm : fmt::format("{}, {}", laser, isotherm);
     }
 
     static std::string figure_of(const LinePlot& plot) {
@@ -281,13 +295,13 @@ std::string pool_over_time(const RunPaths& paths, const std::optional<Scenario>&
     }
     const PoolPlots plots(table, scenario);
     std::string html = "<div class=\"plots\">\n";
-    html += plots.of_pool("Pool length", "length_m", "µm", 1e6);
-    html += plots.of_pool("Pool width", "width_m", "µm", 1e6);
-    html += plots.of_pool("Pool depth", "depth_m", "µm", 1e6);
-    html += plots.of_pool("Pool volume", "volume_m3", "1000 µm³", 1e15);
+    html += plots.of_column("Pool length", "length_m", "µm", 1e6, true);
+    html += plots.of_column("Pool width", "width_m", "µm", 1e6, true);
+    html += plots.of_column("Pool depth", "depth_m", "µm", 1e6, true);
+    html += plots.of_column("Pool volume", "volume_m3", "1000 µm³", 1e15, true);
     html += plots.of_peak();
     html += plots.of_peak_rate();
-    html += plots.of_pool("Laser power", "power_W", "W", 1.0);
+    html += plots.of_column("Laser power", "power_W", "W", 1.0, false);
     html += plots.of_energy();
     html += fmt::format("</div>\n<p><a download=\"melt_pool.csv\" href=\"{}\">The figures as a table "
                         "(melt_pool.csv)</a></p>",
@@ -343,7 +357,7 @@ std::string report_page(const RunPaths& paths, const Warn& warn) {
                        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
     page += fmt::format("<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n", escape_html(title), style);
     page += heading(summary, title);
-    page += moving_picture(paths, warn) + "\n";
+    page += moving_pictures(paths, warn);
     page += section("Melt pool over time", pool_over_time(paths, scenario, warn));
     if (summary) {
         page += section("Energy ledger", ledger_table(*summary));

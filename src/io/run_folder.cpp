@@ -115,7 +115,7 @@ fs::path RunPaths::inspection(std::int64_t step) const {
 bool is_run_output(const fs::path& relative) {
     // run.lock is not among them: it belongs to whoever holds it.
     static const std::regex pattern(
-        R"(run\.(toml|json)|journal\.txt|log\.txt|melt_pool\.csv|solidification\.(csv|vtp)|report\.html|console\.sock)"
+        R"(run\.(toml|json)|journal\.txt|log\.txt|melt_pools?\.csv|solidification\.(csv|vtp)|report\.html|console\.sock)"
         R"(|(particles|surface|pool|grid)\.pvd)"
         R"(|(particles|surface|pool|grid)/[a-z]+_[0-9]+\.vt[piu])"
         R"(|frames/[a-z][a-z0-9_]*_[0-9]{6,}\.png)"

@@ -214,10 +214,7 @@ Snapshot take_snapshot(const Simulation& s, ParticleSelection particles) {
     snapshot.lost_energy = s.ledger.lost() + s.ledger.missed;
     for (const Laser& laser : s.parameters.lasers)
         snapshot.beams.push_back(beam_snapshot(laser, s.time));
-    const Vec3 along = snapshot.beams.empty() ? Vec3(Vec3::Zero()) : snapshot.beams.front().scan_direction;
-    for (const double isotherm : s.parameters.isotherms)
-        snapshot.pools.push_back(
-            measure_pool(snapshot.nodes, *snapshot.temperature, *snapshot.phi, isotherm, along));
+    measure_pools(s.parameters.isotherms, snapshot);
     sample_particles(s, particles, snapshot);
     return snapshot;
 }

@@ -71,9 +71,9 @@ std::optional<double> read_interval(const Section& section, const TimeSpec& time
 }
 
 OutputSpec read_output(const Section& root, const TimeSpec& time, const Material& first_material) {
-    const Section section =
-        root.section("output", {"every", "every_steps", "particles", "surface", "pool", "grid", "compression",
-                                "precision", "solidification", "isotherms"});
+    const Section section = root.section("output", {"every", "every_steps", "particles", "particles_format",
+                                                    "surface", "pool", "grid", "compression", "precision",
+                                                    "solidification", "isotherms", "pool_rows"});
     OutputSpec output;
     if (section.has("every") && section.has("every_steps")) {
         section.fail("every_steps", "every is given as well; only one of the two can hold");
@@ -85,6 +85,9 @@ OutputSpec read_output(const Section& root, const TimeSpec& time, const Material
         output.every = time.end / 20.0;
     }
     output.particles = section.choice("particles", words::particles, output.particles);
+    output.particles_format =
+        section.choice("particles_format", words::particles_format, output.particles_format);
+    output.pool_rows = section.choice("pool_rows", words::pool_rows, output.pool_rows);
     output.surface = section.flag("surface", output.surface);
     output.pool = section.flag("pool", output.pool);
     output.grid = section.flag("grid", output.grid);

@@ -33,6 +33,10 @@ inline const Meanings<OutputSpec::Compression> compression{{"none", OutputSpec::
                                                            {"zlib", OutputSpec::Compression::zlib}};
 inline const Meanings<OutputSpec::Precision> precision{{"float32", OutputSpec::Precision::float32},
                                                        {"float64", OutputSpec::Precision::float64}};
+inline const Meanings<OutputSpec::ParticlesFormat> particles_format{
+    {"vtp", OutputSpec::ParticlesFormat::vtp}, {"vtu", OutputSpec::ParticlesFormat::vtu}};
+inline const Meanings<OutputSpec::PoolRows> pool_rows{{"output", OutputSpec::PoolRows::output},
+                                                      {"step", OutputSpec::PoolRows::step}};
 inline const Meanings<RenderSpec::OnBacklog> on_backlog{{"wait", RenderSpec::OnBacklog::wait},
                                                         {"drop", RenderSpec::OnBacklog::drop}};
 inline const Meanings<RenderSpec::Background> background{{"dark", RenderSpec::Background::dark},

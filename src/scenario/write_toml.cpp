@@ -221,6 +221,7 @@ void write_output(Writer& writer, const OutputSpec& output) {
     writer.put("every", output.every);
     writer.put("every_steps", output.every_steps);
     writer.put("particles", words::of(words::particles, output.particles));
+    writer.put("particles_format", words::of(words::particles_format, output.particles_format));
     writer.put("surface", output.surface);
     writer.put("pool", output.pool);
     writer.put("grid", output.grid);
@@ -228,6 +229,7 @@ void write_output(Writer& writer, const OutputSpec& output) {
     writer.put("compression", words::of(words::compression, output.compression));
     writer.put("precision", words::of(words::precision, output.precision));
     writer.raw("isotherms", list(output.isotherms));
+    writer.put("pool_rows", words::of(words::pool_rows, output.pool_rows));
 }
 
 void write_render(Writer& writer, const RenderSpec& render) {

@@ -24,6 +24,7 @@ struct RunPaths {
     std::filesystem::path journal() const { return root / "journal.txt"; }
     std::filesystem::path log() const { return root / "log.txt"; }
     std::filesystem::path melt_pool_table() const { return root / "melt_pool.csv"; }
+    std::filesystem::path separate_pools_table() const { return root / "melt_pools.csv"; }
     std::filesystem::path solidification_table() const { return root / "solidification.csv"; }
     std::filesystem::path solidification_points() const { return root / "solidification.vtp"; }
     std::filesystem::path report() const { return root / "report.html"; }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 namespace meltscope {
 
 /// Where the energy went, J since the start. absorbed + faces - losses = change of what the particles hold.
@@ -24,5 +27,9 @@ struct Ledger {
     /// round-off.
     double relative_residual() const;
 };
+
+/// The entries that are not zero, J, each with what it is in words, for people; the change of what is stored
+/// comes last.
+std::vector<std::pair<const char*, double>> in_words(const Ledger& ledger);
 
 } // namespace meltscope

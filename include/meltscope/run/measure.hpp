@@ -12,11 +12,22 @@ enum class ParticleSelection { none, surface, melt, all };
 /// nodes.
 Snapshot take_snapshot(const Simulation& simulation, ParticleSelection particles);
 
-/// Length, width, depth and volume of the region hotter than `isotherm` (K) in the material, with linear
-/// interpolation along the grid's edges. `along` is the horizontal scan direction (zero: x). All zero if
-/// nothing is that hot.
-PoolFigures measure_pool(const NodeLattice& nodes, const std::vector<double>& temperature,
-                         const std::vector<double>& phi, double isotherm, const Vec3& along);
+/// What of the material is hotter than one isotherm.
+struct IsothermPools {
+    std::vector<SeparatePool> pools;   ///< the largest first
+    std::vector<PoolFigures> of_beams; ///< each beam's own pool in its own frame
+};
+
+/// The pools above `isotherm` (K): regions joined within cells, so that two are told apart if a whole cell
+/// between them is colder or empty. Sizes by linear interpolation along the grid's edges. A beam's own is the
+/// largest of those that its spot reaches, or else the nearest if no other beam is nearer to it. Without a
+/// scan direction a pool is measured along x.
+IsothermPools measure_pools(const NodeLattice& nodes, const std::vector<double>& temperature,
+                            const std::vector<double>& phi, double isotherm,
+                            const std::vector<BeamSnapshot>& beams);
+
+/// Puts the pools of all isotherms (K) into a snapshot that has its node fields and beams.
+void measure_pools(const std::vector<double>& isotherms, Snapshot& snapshot);
 
 /// Temperature in K, and phi in m, at any point of the box; NaN where no node has mass. For probes.
 struct Probe {

@@ -20,6 +20,23 @@ struct NodeLattice {
     std::array<std::int64_t, 3> count{}; ///< nodes along x, y, z
 };
 
+/// A region hotter than an isotherm, in the frame of a scan direction; all zero: there is none.
+struct PoolFigures {
+    double isotherm = 0.0; ///< K
+    double length = 0.0;   ///< m, along the scan direction
+    double width = 0.0;    ///< m, across it
+    double depth = 0.0;    ///< m, from its highest point down
+    double volume = 0.0;   ///< m^3
+};
+
+/// One of the pools that the material holds, told apart from the others.
+struct SeparatePool {
+    PoolFigures figures;         ///< in the frame of the first of its beams, or of the nearest
+    Vec3 center = Vec3::Zero();  ///< m, of its volume
+    double peak = 0.0;           ///< K
+    std::vector<int> beams = {}; ///< whose pool it is, indices into Snapshot::beams
+};
+
 /// A laser as it stands at the snapshot's time.
 struct BeamSnapshot {
     std::string name;
@@ -32,16 +49,12 @@ struct BeamSnapshot {
     bool on = false;
     std::vector<Vec3> path_done;    ///< m, corners of the path up to the beam
     std::vector<Vec3> path_to_come; ///< m, corners from the beam to the end
+    std::vector<PoolFigures> pools; ///< the beam's own pool in its own frame, one an isotherm
 };
 
-/// The molten pool as one isotherm bounds it, in the frame of the scan direction.
-struct PoolFigures {
-    double isotherm = 0.0; ///< K
-    double length = 0.0;   ///< m, along the scan direction
-    double width = 0.0;    ///< m, across it
-    double depth = 0.0;    ///< m, below the highest point of the pool's surface
-    double volume = 0.0;   ///< m^3
-};
+/// The horizontal direction that a beam's pool is measured along and pictures look across: that of its scan,
+/// while it dwells the way it came; x if it never moved.
+Vec3 level_direction(const BeamSnapshot& beam);
 
 /// Particles picked for output; all arrays have one entry (position: three) a particle, ordered by id.
 struct ParticleSample {
@@ -73,8 +86,11 @@ struct Snapshot {
     double lost_energy = 0.0;      ///< J, lost from surfaces and beside the material since the start
     std::int64_t liquid_particles = 0;
     std::vector<BeamSnapshot> beams;
-    std::vector<PoolFigures> pools; ///< one per isotherm asked for; the first is the liquidus by default
-    ParticleSample particles;       ///< empty unless particles are due
+    /// The pool of the first beam, without beams the largest; one an isotherm asked for, of which the first
+    /// is the liquidus by default.
+    std::vector<PoolFigures> pools;
+    std::vector<SeparatePool> separate_pools; ///< by isotherm in the order of `pools`, the largest first
+    ParticleSample particles;                 ///< empty unless particles are due
 };
 
 } // namespace meltscope

@@ -94,6 +94,8 @@ struct OutputSpec {
     enum class Particles { surface, melt, all, none };
     enum class Compression { none, lz4, zlib };
     enum class Precision { float32, float64 };
+    enum class ParticlesFormat { vtp, vtu };
+    enum class PoolRows { output, step };
     std::optional<double> every;             ///< s; exactly one of every and every_steps is set
     std::optional<std::int64_t> every_steps; ///< steps; default: every = time.end / 20
     Particles particles = Particles::surface;
@@ -103,6 +105,8 @@ struct OutputSpec {
     bool solidification = false; ///< solidification data of every node that freezes
     Compression compression = Compression::none;
     Precision precision = Precision::float32;
+    ParticlesFormat particles_format = ParticlesFormat::vtp;
+    PoolRows pool_rows = PoolRows::output; ///< the melt-pool tables have a row an output, or a step
     std::vector<double>
         isotherms; ///< K, pool figures are made for each; default: liquidus of the first material
 };

@@ -106,6 +106,7 @@ PreparedRun prepare_run(InputOfRun input) {
     if (!input.checkpoint) {
         prepared.run.simulation =
             make_simulation(std::move(parameters), grid, fill_scenario(prepared.scenario), lattice);
+        require_room_for_layers(prepared.run.simulation, prepared.scenario.layers, 0);
         if (prepared.scenario.output.solidification)
             prepared.run.solidification = begin_solidification(prepared.run.simulation);
         return prepared;
@@ -116,6 +117,7 @@ PreparedRun prepare_run(InputOfRun input) {
     apply_steering(steering, parameters, prepared.run.schedule);
     prepared.run.simulation = simulation_from(data, std::move(parameters), grid, lattice);
     prepared.run.layers_laid = layers_laid_by(data);
+    require_room_for_layers(prepared.run.simulation, prepared.scenario.layers, prepared.run.layers_laid);
     if (prepared.scenario.output.solidification)
         prepared.run.solidification = solidification_from(data, prepared.run.simulation);
     prepared.run.journal = data.journal;

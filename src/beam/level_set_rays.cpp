@@ -1,30 +1,13 @@
 #include "level_set_rays.hpp"
 
+#include "meltscope/mpm/trilinear.hpp"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 namespace meltscope {
 namespace {
-
-/// Trilinear level set; outside the box there is no material.
-double level_set_at(const Grid& grid, const Field& phi, const Vec3& point) {
-    std::array<std::int64_t, 3> cell;
-    Vec3 r;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double cells_in = (point[axis] - grid.origin[axis]) / grid.dx;
-        cell[axis] = std::clamp(std::int64_t(std::floor(cells_in)), std::int64_t(0), grid.cells[axis] - 1);
-        r[axis] = std::clamp(cells_in - double(cell[axis]), 0.0, 1.0);
-    }
-    double sum = 0.0;
-    for (int k = 0; k < 2; ++k)
-        for (int j = 0; j < 2; ++j)
-            for (int i = 0; i < 2; ++i)
-                sum += (i ? r[0] : 1.0 - r[0]) * (j ? r[1] : 1.0 - r[1]) * (k ? r[2] : 1.0 - r[2]) *
-                       phi[grid.index(cell[0] + i, cell[1] + j, cell[2] + k)];
-    return sum;
-}
 
 /// The stretch of the ray that lies in the box, as distances from its start; empty if first > last.
 struct Stretch {
@@ -55,7 +38,7 @@ double first_interface(const Grid& grid, const Field& phi, const Vec3& start, co
     const double shortest = 0.1 * grid.dx;
     double t = s.first, before = s.first, phi_before = 0.0;
     while (t <= s.last) {
-        const double value = level_set_at(grid, phi, start + t * direction);
+        const double value = trilinear(grid, phi, start + t * direction);
         if (value <= 0.0) {
             const double fall = phi_before - value;
             return fall > 0.0 ? before + (t - before) * phi_before / fall : t;

@@ -52,6 +52,27 @@ bool is_header(const std::vector<Word>& words) {
            std::tolower(first[2]) == 'd' && std::tolower(first[3]) == 'e';
 }
 
+/// Refuses a header that names the units of the other format.
+void check_units(const std::vector<Word>& header, PathFileFormat format, Place place) {
+    for (const Word& word : header) {
+        std::string name(word.text);
+        std::transform(name.begin(), name.end(), name.begin(),
+                       [](unsigned char c) { return char(std::tolower(c)); });
+        const auto has = [&](std::string_view part) { return name.find(part) != std::string::npos; };
+        place.column = word.column;
+        if (format == PathFileFormat::additivefoam && (has("(mm)") || has("pmod")))
+            place.refuse(
+                fmt::format("{} belongs to a file of 3DThesis, in millimetres and shares of the laser's "
+                            "power: path_format = \"3dthesis\" reads it",
+                            shown(word.text)));
+        if (format == PathFileFormat::threedthesis && (has("(m)") || has("(w)")))
+            place.refuse(
+                fmt::format("{} belongs to a file of AdditiveFOAM, in metres and watts: path_format = "
+                            "\"additivefoam\" reads it",
+                            shown(word.text)));
+    }
+}
+
 double read_number(const Word& word, std::string_view name, Place place) {
     place.column = word.column;
     const std::optional<double> value = parse_number(word.text);
@@ -162,6 +183,7 @@ ScanPath parse_path_text(std::string_view text, std::string_view name, PathFileF
             if (!is_header(words)) {
                 place.refuse("the first line must be the header: Mode X Y Z Power Param");
             }
+            check_units(words, format, place);
             place.column = 1;
             header_seen = true;
             continue;

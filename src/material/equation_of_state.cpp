@@ -105,4 +105,12 @@ double max_diffusivity(const EquationOfState& eos, double coldest, double hottes
     return most;
 }
 
+double max_powder_diffusivity(const EquationOfState& eos) {
+    double most = 0.0;
+    if (eos.powder_conductivity)
+        for (double t = 0.0; t < eos.liquidus; t += 4.0)
+            most = std::max(most, (*eos.powder_conductivity)(t) / (eos.density * eos.heat_capacity(t)));
+    return most;
+}
+
 } // namespace meltscope

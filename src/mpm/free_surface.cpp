@@ -91,7 +91,8 @@ void lay_out(const Grid& grid, const Nodes& nodes, std::span<const Vec3> points,
     Field present(grid.size, 0.0);
     for (std::int64_t i = 0; i < grid.size; ++i)
         present[i] = nodes.mass[i] > 0.0 ? 1.0 : 0.0;
-    mirror_ghosts(grid, Boundary{}, present);
+    // Beyond faces of fixed temperature ghosts have a mass of their own.
+    mirror_ghosts(grid, nodes.boundary, present);
 #pragma omp parallel for schedule(static)
     for (std::size_t s = 0; s < points.size(); ++s) {
         const BinPlace bin = bin_place(grid, points[s]);

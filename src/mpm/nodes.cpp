@@ -76,6 +76,7 @@ Nodes make_nodes(const Grid& grid, const Particles& particles, int materials, co
         field->assign(grid.size, 0.0);
     nodes.energy.assign(materials, Field(grid.size, 0.0));
     nodes.new_energy.assign(materials, Field(grid.size, 0.0));
+    nodes.boundary = boundary;
     nodes.near_fixed_faces = nodes_near_fixed_faces(grid, boundary);
 
     scatter_to_nodes(grid, particles, particles.mass, nodes.mass);
@@ -176,10 +177,10 @@ void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials,
     for (int f = 0; f < 6; ++f)
         if (boundary[f].fixes_temperature())
             for_each_face_node(grid, f, [&](std::int64_t ghost, std::int64_t face, std::int64_t mirror) {
-                if (nodes.inertia[mirror] > 0.0) {
+                if (nodes.mass[face] > 0.0)
                     nodes.temperature[face] = boundary[f].temperature;
+                if (nodes.mass[ghost] > 0.0)
                     nodes.temperature[ghost] = 2.0 * boundary[f].temperature - nodes.temperature[mirror];
-                }
             });
     mirror_ghosts(grid, boundary, nodes.temperature); // last: where two faces meet it copies what was set
 }

@@ -171,12 +171,16 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
                           const std::vector<EquationOfState>& materials, const Boundary& boundary,
                           const StepOptions& options, double dt, Nodes& nodes) {
     const int count = int(materials.size());
-    // What deposit() left on nodes without mass never comes in, here or elsewhere.
+    // What deposit() left on nodes without mass never comes in, here or elsewhere; on ghosts it must not be
+    // folded either.
     fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.increment);
     double conducted = 0.0; // J
-    for (const std::int64_t i : nodes.near_fixed_faces)
+    for (const std::int64_t i : nodes.near_fixed_faces) {
         if (nodes.mass[i] > 0.0)
             conducted -= nodes.increment[i];
+        else
+            nodes.increment[i] = 0.0;
+    }
     fold_ghosts(grid, boundary, AtFixedFaces::odd, nodes.increment);
     const Field& inertia = nodes.inertia.empty() ? nodes.mass : nodes.inertia;
     if (options.affine)
@@ -264,20 +268,20 @@ void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Par
     });
 }
 
-Field particle_temperatures(const Grid& grid, const Particles& particles, const Nodes& nodes) {
+Field interpolate_to_particles(const Grid& grid, const Particles& particles, const Field& nodal) {
     const LatticeStencils lattices;
-    Field temperature(particles.layout.size(), 0.0);
+    Field result(particles.layout.size(), 0.0);
 #pragma omp parallel for schedule(static)
     for (std::size_t g = 0; g < particles.layout.groups.size(); ++g) {
         const LaneGroup& group = particles.layout.groups[g];
         for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
             std::array<Lanes, std::decay_t<decltype(stencil)>::points> value;
-            stencil.gather(nodes.temperature.data() + group.corner, grid.stride_y, grid.stride_z, value);
+            stencil.gather(nodal.data() + group.corner, grid.stride_y, grid.stride_z, value);
             for (std::size_t p = 0; p < value.size(); ++p)
-                store(value[p], &temperature[first + p * lane_count]);
+                store(value[p], &result[first + p * lane_count]);
         });
     }
-    return temperature;
+    return result;
 }
 
 } // namespace meltscope

@@ -148,29 +148,14 @@ bool wanted(ParticleSelection selection, double phi_hat, double liquid_fraction)
     return false;
 }
 
-Field interpolate(const Grid& grid, const Particles& particles, const Field& nodal) {
-    const LatticeStencils lattices;
-    Field result(particles.layout.size(), 0.0);
-#pragma omp parallel for schedule(static)
-    for (std::size_t g = 0; g < particles.layout.groups.size(); ++g) {
-        const LaneGroup& group = particles.layout.groups[g];
-        for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
-            std::array<Lanes, std::decay_t<decltype(stencil)>::points> value;
-            stencil.gather(nodal.data() + group.corner, grid.stride_y, grid.stride_z, value);
-            for (std::size_t p = 0; p < value.size(); ++p)
-                store(value[p], &result[first + p * lane_count]);
-        });
-    }
-    return result;
-}
-
 /// Fills the snapshot's particles and counts the molten ones.
 void sample_particles(const Simulation& s, ParticleSelection selection, Snapshot& snapshot) {
     const Particles& particles = s.particles;
     const Field temperature = particle_temperatures(s.grid, particles, s.nodes);
     const bool needs_phi = selection == ParticleSelection::surface || selection == ParticleSelection::melt ||
                            selection == ParticleSelection::all;
-    const Field phi_hat = needs_phi ? interpolate(s.grid, particles, s.surface.phi_hat) : Field{};
+    const Field phi_hat =
+        needs_phi ? interpolate_to_particles(s.grid, particles, s.surface.phi_hat) : Field{};
     ParticleSample& sample = snapshot.particles;
     for (std::int64_t q = 0; q < particles.count(); ++q) {
         const std::int64_t at = particles.layout.place[q];

@@ -146,6 +146,22 @@ void check_layer(const Simulation& s, const PowderLayer& layer) {
             layer.thickness, layer.temperature, layer.packing));
 }
 
+/// `what` is the layer that would end at height `top`, m.
+void require_room(const Simulation& s, double top, const std::string& what) {
+    const double end = s.grid.upper_corner()[2];
+    if (top > end + 1e-6 * s.grid.dx)
+        throw GeometryError(fmt::format(
+            "{} does not fit: its top would be at z = {:g} m and the domain ends at {:g} m; take a "
+            "higher domain.max or a smaller layer.thickness",
+            what, top, end));
+}
+
+std::vector<ScheduledLayer> in_order(std::vector<ScheduledLayer> layers) {
+    std::stable_sort(layers.begin(), layers.end(),
+                     [](const ScheduledLayer& a, const ScheduledLayer& b) { return a.time < b.time; });
+    return layers;
+}
+
 } // namespace
 
 std::int64_t add_layer(Simulation& s, const PowderLayer& layer) {
@@ -156,10 +172,7 @@ std::int64_t add_layer(Simulation& s, const PowderLayer& layer) {
     Box space{s.grid.origin, s.grid.upper_corner()};
     space.min[2] = relief.lower_edge(2, *lowest);
     const double top = relief.lower_edge(2, *highest) + layer.thickness;
-    if (top > space.max[2] + 1e-6 * lattice.spacing)
-        throw GeometryError(fmt::format(
-            "the layer does not fit: its top would be at z = {:g} m and the domain ends at {:g} m", top,
-            space.max[2]));
+    require_room(s, top, "the layer");
     space.max[2] = top;
 
     const std::vector<Shape> shapes{layer.homogenised ? Shape(space)
@@ -196,9 +209,26 @@ std::int64_t add_layer(Simulation& s, const PowderLayer& layer) {
     return list.size();
 }
 
+void require_room_for_layers(const Simulation& s, std::vector<ScheduledLayer> layers, std::int64_t laid) {
+    if (std::size_t(laid) >= layers.size())
+        return;
+    layers = in_order(std::move(layers));
+    const Relief relief = relief_of(s);
+    std::int64_t highest = *std::max_element(relief.filled.begin(), relief.filled.end());
+    for (std::size_t n = std::size_t(laid); n < layers.size(); ++n) {
+        const PowderLayer& layer = layers[n].layer;
+        check_layer(s, layer);
+        const double top = relief.lower_edge(2, highest) + layer.thickness;
+        require_room(s, top, fmt::format("the layer of t = {:g} s", layers[n].time));
+        // Homogenised powder fills the layer; how high balls come is known when they have settled.
+        if (layer.homogenised)
+            highest = std::max(highest, std::int64_t(std::floor(
+                                            (top - relief.lower_edge(2, 0)) / relief.lattice.spacing + 0.5)));
+    }
+}
+
 CommandSource scheduled_layers(std::vector<ScheduledLayer> layers) {
-    std::stable_sort(layers.begin(), layers.end(),
-                     [](const ScheduledLayer& a, const ScheduledLayer& b) { return a.time < b.time; });
+    layers = in_order(std::move(layers));
     const auto next = [layers](const Run& run) {
         return std::size_t(run.layers_laid) < layers.size() ? layers[run.layers_laid].time : never;
     };

@@ -1,9 +1,24 @@
 #include "meltscope/scenario/scenario.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 namespace meltscope {
+namespace {
+
+bool is_used(const Scenario& scenario, std::size_t material) {
+    return std::any_of(
+               scenario.bodies.begin(), scenario.bodies.end(),
+               [&](const BodySpec& body) { return body.material == scenario.materials[material].name; }) ||
+           std::any_of(scenario.layers.begin(), scenario.layers.end(), [&](const ScheduledLayer& scheduled) {
+               return std::size_t(scheduled.layer.material) == material;
+           });
+}
+
+} // namespace
 
 double DomainSpec::particle_spacing() const {
     return cell_size / std::round(std::cbrt(particles_per_cell));
@@ -27,6 +42,17 @@ std::vector<std::string> scenario_notes(const Scenario& scenario) {
                 "\": heat_capacity.powder is not used; a kilogram of powder holds as much heat as a "
                 "kilogram of the bulk, so that melting keeps the energy");
         }
+    }
+    for (std::size_t m = 0; m < scenario.materials.size(); ++m)
+        if (!is_used(scenario, m))
+            notes.push_back("material \"" + scenario.materials[m].name +
+                            "\": no body and no layer is made of it");
+    for (const Laser& laser : scenario.lasers) {
+        if (const double end = path_end_time(laser.path); end > scenario.time.end)
+            notes.push_back(
+                fmt::format("laser \"{}\": its path ends at t = {:g} s, after time.end = {:g} s; the "
+                            "rest is not run",
+                            laser.name, end, scenario.time.end));
     }
     return notes;
 }

@@ -5,6 +5,8 @@
 #include "meltscope/build/powder.hpp"
 #include "meltscope/build/stl.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -81,9 +83,39 @@ std::vector<Shape> make_shapes(const Scenario& scenario) {
                 return spec;
             }
         };
-        shapes.push_back(std::visit(make, body.shape));
+        try {
+            shapes.push_back(std::visit(make, body.shape));
+        } catch (const GeometryError& error) {
+            throw GeometryError(fmt::format("body[{}]: {}", shapes.size(), error.what()));
+        }
     }
     return shapes;
+}
+
+/// Refuses a body that has no part in the run.
+void require_sites_for_all(const Scenario& scenario, const LatticeFill& filling, const Lattice& lattice) {
+    std::vector<char> present(scenario.bodies.size(), 0);
+#pragma omp parallel
+    {
+        std::vector<std::int16_t> sites(lattice.count[0] * lattice.count[1]);
+        std::vector<char> seen(present.size(), 0);
+#pragma omp for schedule(dynamic)
+        for (std::int64_t k = 0; k < lattice.count[2]; ++k) {
+            filling.layer(k, sites);
+            for (const std::int16_t body : sites)
+                if (body >= 0)
+                    seen[body] = 1;
+        }
+#pragma omp critical
+        for (std::size_t body = 0; body < present.size(); ++body)
+            present[body] |= seen[body];
+    }
+    for (std::size_t body = 0; body < present.size(); ++body)
+        if (!present[body])
+            throw GeometryError(fmt::format(
+                "body[{}] holds not one particle: it lies outside the domain, between the particles' "
+                "sites, which are {:g} m apart, or wholly within bodies that come after it",
+                body, lattice.spacing));
 }
 
 } // namespace
@@ -136,6 +168,7 @@ ParticleList fill_scenario(const Scenario& scenario) {
     }
 
     const LatticeFill filling(shapes, lattice);
+    require_sites_for_all(scenario, filling, lattice);
     const double volume = spacing * spacing * spacing;
     const bool has_powder = std::any_of(scenario.bodies.begin(), scenario.bodies.end(),
                                         [](const BodySpec& body) { return body.powder_packing.has_value(); });

@@ -113,4 +113,8 @@ EquationOfState make_equation_of_state(const Material& material);
 /// bulk and, if the material has one, the powder's kappa with the bulk's rho.
 double max_diffusivity(const EquationOfState& eos, double coldest, double hottest);
 
+/// Largest kappa/(rho c) in m^2/s of powder below the liquidus, with the powder's kappa and the bulk's rho;
+/// zero if the material has none.
+double max_powder_diffusivity(const EquationOfState& eos);
+
 } // namespace meltscope

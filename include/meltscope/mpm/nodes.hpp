@@ -16,6 +16,7 @@ namespace meltscope {
 /// temperature: sum_A m_iA e_A(T_i) = (m e)_i, which for constant heat capacities is their capacity-weighted
 /// mean temperature and conserves energy exactly. So specific energies are kept a field a material.
 struct Nodes {
+    Boundary boundary;         ///< that ghosts are folded and mirrored by
     Field mass;                ///< m_i, kg; ghosts beyond faces that do not fix the temperature are folded in
     Field inertia;             ///< m_i with all ghosts folded in; empty unless a face fixes the temperature
     Field mass_energy;         ///< (m e)_i, J

@@ -32,7 +32,12 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
 void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Particles& particles,
                                Nodes& nodes);
 
-/// Interpolates the node temperatures to the particles, in layout order.
-Field particle_temperatures(const Grid& grid, const Particles& particles, const Nodes& nodes);
+/// sum_i f_i N_ip of a nodal field at the particles, in layout order.
+Field interpolate_to_particles(const Grid& grid, const Particles& particles, const Field& nodal);
+
+/// The same of the temperature, K.
+inline Field particle_temperatures(const Grid& grid, const Particles& particles, const Nodes& nodes) {
+    return interpolate_to_particles(grid, particles, nodes.temperature);
+}
 
 } // namespace meltscope

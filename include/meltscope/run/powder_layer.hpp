@@ -38,6 +38,11 @@ struct ScheduledLayer {
     bool operator==(const ScheduledLayer&) const = default;
 };
 
+/// Refuses, before a run, layers that are sure not to fit below the domain's top; `laid` of them are there
+/// already. Balls are taken to add no height. Throws as add_layer.
+void require_room_for_layers(const Simulation& simulation, std::vector<ScheduledLayer> layers,
+                             std::int64_t laid);
+
 /// Lays the layers of a scenario, in the order of their times. Run::layers_laid counts them, so that a run
 /// taken up from a checkpoint does not lay one twice.
 CommandSource scheduled_layers(std::vector<ScheduledLayer> layers);

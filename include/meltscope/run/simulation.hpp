@@ -16,11 +16,11 @@ namespace meltscope {
 
 /// Which numerical forms and physical effects are on. Steerable between steps, but for transfer and deposit.
 struct PhysicsOptions {
-    bool affine_transfer = true;    ///< false: the seed's values alone (FLIP)
-    bool deposit_at_surface = true; ///< false: in the band, at the particles
-    bool diffuse_energy = false;    ///< the seed's form of the flux; one material only
-    std::optional<double>
-        blend_time; ///< s, tau of b = min(1, dt/tau); default: dx^2/alpha_max (affine), never (flip)
+    bool affine_transfer = true;      ///< false: the seed's values alone (FLIP)
+    bool deposit_at_surface = true;   ///< false: in the band, at the particles
+    bool diffuse_energy = false;      ///< the seed's form of the flux; one material only
+    std::optional<double> blend_time; ///< s, tau of b = min(1, dt/tau); default: dx^2/alpha_max, of
+                                      ///< homogenised powder if there is any (affine), never (flip)
     bool radiation = false;
     bool evaporation = false;
     bool reabsorption = false;
@@ -67,7 +67,8 @@ struct Simulation {
 
     // Derived from the parameters and the particles' places; made anew when these change.
     std::vector<EquationOfState> eos;
-    double least_packing = 1.0; ///< density of the lightest homogenised powder by that of its bulk
+    double least_packing = 1.0;      ///< density of the lightest homogenised powder by that of its bulk
+    double powder_diffusivity = 0.0; ///< m^2/s, largest of homogenised powder that has not melted; inf: none
     FreeSurface surface;
     std::vector<LightMap> light_maps;          ///< one a laser
     std::vector<LossLaw> loss_laws;            ///< one a material; empty while no loss is on
@@ -75,8 +76,8 @@ struct Simulation {
     std::optional<RadiativeExchange> exchange; ///< set while reabsorption is on
 
     // Of the last step, for the log and the tables.
-    double peak_temperature = 0.0;      ///< K, hottest node
-    double coldest_temperature = 0.0;   ///< K, coldest node with mass
+    double peak_temperature = 0.0;      ///< K, hottest particle, rounded up to a kelvin
+    double coldest_temperature = 0.0;   ///< K, coldest particle, rounded down to a kelvin
     std::vector<Absorption> absorption; ///< one a laser
     double seconds_in_level_set = 0.0;  ///< wall time spent on the free surface and the light maps
 };

@@ -93,6 +93,24 @@ TEST(PathFile, message_names_line_column_and_reason) {
               std::string::npos);
 }
 
+TEST(PathFile, header_with_the_other_formats_units_is_refused_by_name) {
+    const auto complaint = [](const char* header, PathFileFormat format) -> std::string {
+        try {
+            parse_path_text(std::string(header) + "\n1 0 0 0 0 0\n0 1 0 0 1 1\n", "p.txt", format, 100.0);
+        } catch (const PathError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const char* metres = "Mode X(m) Y(m) Z(m) Power(W) tParam";
+    const char* millimetres = "Mode X(mm) Y(mm) Z(mm) Pmod tParam";
+    EXPECT_EQ(complaint(metres, PathFileFormat::additivefoam), "");
+    EXPECT_EQ(complaint(millimetres, PathFileFormat::threedthesis), "");
+    EXPECT_NE(complaint(millimetres, PathFileFormat::additivefoam).find("p.txt:1:6: X(mm)"),
+              std::string::npos);
+    EXPECT_NE(complaint(metres, PathFileFormat::threedthesis).find("p.txt:1:6: X(m)"), std::string::npos);
+}
+
 TEST(PathFile, file_without_header_or_rows_is_refused) {
     EXPECT_NE(message_of("1 0 0 0 0 0\n0 1 0 0 1 1\n", foam).find("scan.txt:1:1: the first line"),
               std::string::npos);

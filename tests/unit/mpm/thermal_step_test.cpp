@@ -95,6 +95,61 @@ TEST(ThermalStep, change_of_the_energy_is_what_was_deposited_and_conducted) {
             }
 }
 
+/// A ball that ends `gap` (in cells of 0.1) before the face x = 0, which is held at 300 K.
+ThermalRun ball_beside_a_cold_face(double gap) {
+    const Grid grid = make_grid(Vec3::Zero(), 0.1, {12, 12, 12});
+    const Vec3 center(0.1 * gap + 0.33, 0.61, 0.58);
+    ParticleList list = lattice_points(grid, 2, [&](const Vec3& x) { return (x - center).norm() < 0.33; });
+    const std::vector<EquationOfState> eos{make_equation_of_state(constant_material())};
+    set_state(
+        eos, [](const Vec3&) { return 600.0; }, list);
+    Boundary boundary;
+    boundary[0] = {FaceCondition::Kind::fixed_temperature, 300.0, 0.0, 0.0};
+    return ThermalRun(grid, eos, boundary, std::move(list), 2);
+}
+
+TEST(ThermalStep, heat_beside_a_fixed_face_that_the_body_does_not_reach_is_all_accounted_for) {
+    // Foot points lie up to half a spacing nearer to the face than particles, so that they may see ghosts
+    // which no particle sees.
+    int seen = 0;
+    for (const double gap : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6}) {
+        ThermalRun run = ball_beside_a_cold_face(gap);
+        const FreeSurface surface = find_free_surface(run.grid, run.particles, run.nodes, {}, true);
+        for (const Vec3& x : surface.elements.point) {
+            const BinPlace bin = bin_place(run.grid, x);
+            seen += bin.node[0] == 0 && run.nodes.mass[run.grid.index(-1, bin.node[1], bin.node[2])] == 0.0;
+        }
+        double deposited = 0.0;
+        std::vector<double> heat(surface.elements.count());
+        run.advance(0.02, 1.0, [&](double dt) {
+            for (std::int64_t s = 0; s < surface.elements.count(); ++s)
+                deposited += heat[s] = 1e4 * dt * surface.elements.area[s];
+            deposit(run.grid, surface.elements, heat, run.nodes);
+        });
+        const double change = total_energy(run.particles) - run.start_energy;
+        EXPECT_GT(deposited, 0.1 * run.start_energy);
+        EXPECT_NEAR((change - run.conducted - deposited) / run.start_energy, 0.0, 1e-13) << "gap " << gap;
+    }
+    EXPECT_GT(seen, 0);
+}
+
+TEST(ThermalStep, a_fixed_face_beyond_the_reach_of_all_particles_is_not_seen_by_the_surface) {
+    // More than a cell and a half away: no particle reaches the nodes of the face, some foot points do.
+    const ThermalRun run = ball_beside_a_cold_face(1.3);
+    const FreeSurface surface = find_free_surface(run.grid, run.particles, run.nodes, {}, true);
+    for (std::int64_t k = 0; k <= 12; ++k)
+        for (std::int64_t j = 0; j <= 12; ++j)
+            ASSERT_EQ(run.nodes.mass[run.grid.index(0, j, k)], 0.0);
+    double nearest = 1.0;
+    for (const Vec3& x : surface.elements.point)
+        nearest = std::min(nearest, x[0]);
+    ASSERT_LT(nearest, 0.15);
+    std::vector<double> temperature;
+    surface_temperatures(run.grid, surface.elements, run.nodes, temperature);
+    for (const double t : temperature)
+        EXPECT_NEAR(t, 600.0, 1e-9);
+}
+
 TEST(ThermalStep, energy_form_is_the_temperature_form_for_constant_heat_capacity) {
     for (const bool affine : {true, false}) {
         Stepping by_temperature, by_energy;

@@ -117,6 +117,26 @@ TEST(PowderLayer, one_that_does_not_fit_is_refused_and_changes_nothing) {
     EXPECT_EQ(s.particles.count(), before);
 }
 
+TEST(PowderLayer, layers_that_can_never_fit_are_refused_before_the_run) {
+    const Simulation s = test::steel_block(0.5); // up to 40 um of 80 um
+    const auto layers = [](const PowderLayer& first, const PowderLayer& second) {
+        return std::vector<ScheduledLayer>{{2e-3, second}, {1e-3, first}}; // in any order
+    };
+    EXPECT_NO_THROW(require_room_for_layers(s, layers(homogenised(20e-6), homogenised(20e-6)), 0));
+    EXPECT_THROW(require_room_for_layers(s, layers(homogenised(20e-6), homogenised(25e-6)), 0),
+                 GeometryError);
+    EXPECT_THROW(require_room_for_layers(s, layers(homogenised(45e-6), homogenised(10e-6)), 0),
+                 GeometryError);
+    // Balls need not reach the layer's top, so a layer on them may still fit.
+    EXPECT_NO_THROW(require_room_for_layers(s, layers(balls(30e-6), homogenised(20e-6)), 0));
+    // The first one is there already.
+    EXPECT_NO_THROW(require_room_for_layers(s, layers(homogenised(50e-6), homogenised(40e-6)), 1));
+    PowderLayer without_material = homogenised(10e-6);
+    without_material.material = 7;
+    EXPECT_THROW(require_room_for_layers(s, layers(without_material, homogenised(10e-6)), 0),
+                 std::invalid_argument);
+}
+
 TEST(PowderLayer, scheduled_layers_come_once_and_in_time) {
     meltscope::Run run;
     run.simulation = test::steel_block(0.25);

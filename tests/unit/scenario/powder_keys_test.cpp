@@ -98,5 +98,26 @@ TEST(PowderKeys, a_heat_capacity_of_powder_is_said_to_have_no_effect) {
     EXPECT_TRUE(scenario_notes(read_scenario_text(example)).empty());
 }
 
+TEST(ScenarioNotes, say_what_is_not_run_and_what_is_not_used) {
+    const auto notes = [](const std::string& path) {
+        Scenario scenario = read_scenario_text(example);
+        scenario.time.end = 1e-3;
+        const Vec3 middle = 0.5 * (scenario.domain.min + scenario.domain.max);
+        scenario.lasers[0].path = ScanPath{middle, 0.0, {{PathSegment::Kind::dwell, middle, 0.0, 5e-4}}, {}};
+        if (path == "late")
+            scenario.lasers[0].path.segments[0].duration = 2e-3;
+        if (path == "unused") {
+            scenario.materials.push_back(scenario.materials[0]);
+            scenario.materials.back().name = "spare";
+        }
+        return scenario_notes(scenario);
+    };
+    EXPECT_TRUE(notes("").empty());
+    for (const auto& [path, word] : {std::pair{"late", "is not run"}, {"unused", "spare"}}) {
+        ASSERT_EQ(notes(path).size(), 1u) << path;
+        EXPECT_NE(notes(path)[0].find(word), std::string::npos) << path;
+    }
+}
+
 } // namespace
 } // namespace meltscope

@@ -1,21 +1,19 @@
-"""Draws the cooling curves: plot.py radiating_ball.csv picture.png"""
-import csv
+#!/usr/bin/python3
+"""Plots what meltscope_radiating_ball_verification wrote: plot.py [FOLDER WITH THE CSV FILES]."""
 import sys
+from pathlib import Path
 
-import matplotlib
+import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "reference"))
+from plotting import figure, read, save
 
-rows = list(csv.DictReader(open(sys.argv[1])))
-figure, axes = plt.subplots(figsize=(6, 4))
-for cells in sorted({float(r["cells_in_radius"]) for r in rows}):
-    mine = [r for r in rows if float(r["cells_in_radius"]) == cells]
-    axes.plot([float(r["time_s"]) for r in mine], [float(r["computed_K"]) for r in mine], "o", fillstyle="none",
-              ms=4 + cells, label=f"R = {cells:.0f} dx")
-axes.plot([float(r["time_s"]) for r in mine], [float(r["exact_K"]) for r in mine], "k-", label="lumped")
+rows = read("radiating_ball")
+axes = figure("A black ball of 0.2 mm radiates into surroundings at 300 K")
+for cells in np.unique(rows["cells_in_radius"]):
+    mine = rows[rows["cells_in_radius"] == cells]
+    axes.plot(mine["time_s"], mine["computed_K"], "o", fillstyle="none", markersize=4 + cells, label=f"R = {cells:.0f} dx")
+axes.plot(mine["time_s"], mine["exact_K"], "k-", label="lumped equation")
 axes.set_xlabel("time (s)")
 axes.set_ylabel("mean temperature (K)")
-axes.legend()
-figure.tight_layout()
-figure.savefig(sys.argv[2], dpi=150)
+save(axes, "radiating_ball")

@@ -1,0 +1,98 @@
+#include "meltscope/mpm/temperature_range.hpp"
+
+#include "meltscope/mpm/group_stencils.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace meltscope {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Whole kelvins begin at 0.37, so that round-off of a plate at a round temperature does not straddle two.
+constexpr double kelvin_begins = 0.37;
+
+double rounded_down(double t) {
+    return std::floor(t - kelvin_begins) + kelvin_begins;
+}
+
+double rounded_up(double t) {
+    return std::ceil(t - kelvin_begins) + kelvin_begins;
+}
+
+struct Bounds {
+    double low = infinite, high = -infinite;
+
+    void include(const Bounds& other) {
+        low = std::min(low, other.low);
+        high = std::max(high, other.high);
+    }
+};
+
+/// Bounds of the node temperatures around a group; nodes without one (zero) are left out.
+Bounds node_bounds(const Grid& grid, const LaneGroup& group, const double* temperature, bool& finite) {
+    Lanes low(infinite), high(-infinite), sum(0.0);
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                const Lanes t = load(temperature + group.corner + i + j * grid.stride_y + k * grid.stride_z);
+                low = min(low, select(t == 0.0, Lanes(infinite), t));
+                high = max(high, select(t == 0.0, Lanes(-infinite), t));
+                sum += abs(t);
+            }
+    finite = std::isfinite(reduce(sum)); // comparisons with what is not a number say nothing
+    return {hmin(low), hmax(high)};
+}
+
+Bounds particle_bounds(const Grid& grid, const Particles& particles, const LatticeStencils& lattices,
+                       const LaneGroup& group, const double* temperature) {
+    Lanes low(infinite), high(-infinite);
+    for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+        std::array<Lanes, std::decay_t<decltype(stencil)>::points> t;
+        stencil.gather(temperature + group.corner, grid.stride_y, grid.stride_z, t);
+        for (std::size_t p = 0; p < t.size(); ++p) {
+            const auto padding = load(&particles.mass[first + p * lane_count]) == 0.0;
+            low = min(low, select(padding, Lanes(infinite), t[p]));
+            high = max(high, select(padding, Lanes(-infinite), t[p]));
+        }
+    });
+    return {hmin(low), hmax(high)};
+}
+
+} // namespace
+
+TemperatureRange particle_temperature_range(const Grid& grid, const Particles& particles,
+                                            const Nodes& nodes) {
+    const LatticeStencils lattices;
+    const double* temperature = nodes.temperature.data();
+    Bounds all;
+    bool all_finite = true;
+#pragma omp parallel
+    {
+        // What a thread has seen says which groups it need not look into; the rounded range of all is the
+        // same whichever thread saw what.
+        Bounds seen;
+        bool seen_finite = true;
+#pragma omp for schedule(static) nowait
+        for (std::size_t g = 0; g < particles.layout.groups.size(); ++g) {
+            const LaneGroup& group = particles.layout.groups[g];
+            bool finite = true;
+            const Bounds bounds = node_bounds(grid, group, temperature, finite);
+            seen_finite = seen_finite && finite;
+            if (rounded_down(bounds.low) < seen.low || rounded_up(bounds.high) > seen.high) {
+                const Bounds exact = particle_bounds(grid, particles, lattices, group, temperature);
+                seen.include({rounded_down(exact.low), rounded_up(exact.high)});
+            }
+        }
+#pragma omp critical
+        {
+            all.include(seen);
+            all_finite = all_finite && seen_finite;
+        }
+    }
+    return {all.low, all.high, all_finite};
+}
+
+} // namespace meltscope

@@ -198,7 +198,9 @@ void FileOutput::write_one(const std::string& kind, const char* extension, vtkDa
     int reason = errno;
     if (good && std::rename(temporary.c_str(), (folder / name).c_str()) == 0) {
         const auto path = options_.run_dir / (kind + ".pvd");
-        collections_.try_emplace(kind, path).first->second.append(time, kind + "/" + name);
+        PvdCollection& collection = collections_.try_emplace(kind, path).first->second;
+        collection.forget_missing();
+        collection.append(time, kind + "/" + name);
         return;
     }
     reason = good ? errno : reason;

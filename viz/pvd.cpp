@@ -91,11 +91,13 @@ void PvdCollection::drop_from(double time) {
     write();
 }
 
-void PvdCollection::append(double time, const std::string& file) {
-    // Files that somebody has removed meanwhile would make readers fail.
+void PvdCollection::forget_missing() {
     std::erase_if(entries_, [this](const Entry& entry) {
         return !std::filesystem::exists(path_.parent_path() / entry.file);
     });
+}
+
+void PvdCollection::append(double time, const std::string& file) {
     entries_.push_back({time, file});
     write();
 }

@@ -20,8 +20,10 @@ class PvdCollection {
     void load();
     /// Takes out the entries at or after that time and writes the file anew.
     void drop_from(double time);
-    /// Adds an entry, takes out those whose files are gone, and writes the file anew. Throws VizError if that
-    /// fails.
+    /// Takes out the entries whose files somebody has removed: readers would fail. On disk with the next
+    /// write.
+    void forget_missing();
+    /// Adds an entry and writes the file anew. Throws VizError if that fails.
     void append(double time, const std::string& file);
 
     const std::vector<Entry>& entries() const { return entries_; }

@@ -103,9 +103,11 @@ TEST(ScenarioNotes, say_what_is_not_run_and_what_is_not_used) {
         Scenario scenario = read_scenario_text(example);
         scenario.time.end = 1e-3;
         const Vec3 middle = 0.5 * (scenario.domain.min + scenario.domain.max);
-        scenario.lasers[0].path = ScanPath{middle, 0.0, {{PathSegment::Kind::dwell, middle, 0.0, 5e-4}}, {}};
-        if (path == "late")
-            scenario.lasers[0].path.segments[0].duration = 2e-3;
+        PathSegment dwell;
+        dwell.kind = PathSegment::Kind::dwell;
+        dwell.end = middle;
+        dwell.duration = path == "late" ? 2e-3 : 5e-4;
+        scenario.lasers[0].path = ScanPath{middle, 0.0, {dwell}, {}};
         if (path == "unused") {
             scenario.materials.push_back(scenario.materials[0]);
             scenario.materials.back().name = "spare";

@@ -3,6 +3,7 @@
 #include "exit_codes.hpp"
 #include "machine.hpp"
 
+#include "meltscope/console/commands.hpp"
 #include "meltscope/io/run_state.hpp"
 #include "meltscope/scenario/scenario_file.hpp"
 #include "meltscope/scenario/setup.hpp"
@@ -91,6 +92,9 @@ InputOfRun read_input(const std::optional<std::filesystem::path>& scenario_file,
         input.scenario = scenario_file ? read_scenario(*scenario_file, overrides)
                                        : read_scenario_text(input.checkpoint->scenario, overrides, name);
         require_same_grid(*input.original, input.scenario, checkpoint);
+        if (to_toml(*input.original) != to_toml(input.scenario))
+            input.adopted = adoption(overrides, scenario_file.value_or(std::filesystem::path()),
+                                     to_toml(*input.original));
     }
     require_memory_for(input.scenario);
     return input;
@@ -99,6 +103,7 @@ InputOfRun read_input(const std::optional<std::filesystem::path>& scenario_file,
 PreparedRun prepare_run(InputOfRun input) {
     PreparedRun prepared;
     prepared.scenario = std::move(input.scenario);
+    prepared.adopted = std::move(input.adopted);
     RunParameters parameters = run_parameters(prepared.scenario);
     prepared.run.schedule = output_schedule(prepared.scenario);
     const Grid grid = scenario_grid(prepared.scenario);
@@ -123,6 +128,28 @@ PreparedRun prepare_run(InputOfRun input) {
     prepared.run.journal = data.journal;
     prepared.resumed_at = data.time;
     return prepared;
+}
+
+void adopt_changes(PreparedRun& prepared, const std::vector<std::string>& changes) {
+    const std::string text = to_toml(prepared.scenario);
+    InputOfRun input;
+    input.original = prepared.scenario;
+    input.scenario = read_scenario_text(text, changes, "the run's scenario");
+    require_same_grid(*input.original, input.scenario, "the run");
+    Scenario of_same_layers = input.scenario;
+    of_same_layers.layers = prepared.scenario.layers;
+    if (to_toml(of_same_layers) != to_toml(input.scenario))
+        throw UsageError("the scenario's powder layers cannot be changed in a run; `layer` adds one");
+    Run& run = prepared.run;
+    balance(run.simulation);
+    input.checkpoint = checkpoint_of(run, text);
+    const std::vector<double> isotherms = run.simulation.parameters.isotherms;
+    PreparedRun changed = prepare_run(std::move(input));
+    changed.run.simulation.parameters.isotherms = isotherms; // the table has its columns
+    prepared.scenario = std::move(changed.scenario);
+    run.simulation = std::move(changed.run.simulation);
+    run.schedule = changed.run.schedule;
+    run.solidification = std::move(changed.run.solidification);
 }
 
 std::optional<std::filesystem::path> folder_of_checkpoint(const std::filesystem::path& checkpoint) {

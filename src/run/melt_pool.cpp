@@ -150,7 +150,9 @@ void rim_points(const HotRegions& regions, const Bounds& bounds, const std::arra
             region = std::max(region, regions.at(i, j, k));
         if (region < 0)
             continue;
-        for (const std::array<int, 3>& half : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+        // Both ways to halve it, so that mirror images measure alike.
+        for (const std::array<int, 3>& half :
+             {std::array{0, 1, 2}, std::array{0, 2, 3}, std::array{0, 1, 3}, std::array{1, 2, 3}}) {
             std::array<double, 3> hot, inside;
             for (int n = 0; n < 3; ++n) {
                 hot[n] = bounds.hot(corners[half[n]]);

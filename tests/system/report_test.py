@@ -2,10 +2,20 @@
 
 import base64
 import html.parser
+import os
 import shutil
+import subprocess
 import unittest
 
-from program import ProgramTest
+try:
+    import numpy as np
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOImage import vtkPNGReader
+    CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+except ImportError:
+    CHROMIUM = None  # its picture could not be judged
+
+from program import QUICK_LOOK, SMALL, ProgramTest
 
 VOID = {"meta", "img", "line", "br", "link", "polyline"}
 
@@ -105,6 +115,48 @@ class Report(ProgramTest):
         (self.folder / "run" / "run.json").write_text("{")
         result = self.must_succeed("report", self.folder / "run")
         self.assertIn("run.json", result.stderr)
+
+    @unittest.skipUnless(CHROMIUM, "no Chromium")
+    def test_a_browser_opens_the_page_from_the_disk_and_draws_it(self):
+        movie = bool(shutil.which("ffmpeg") and (shutil.which("Xvfb") or os.environ.get("DISPLAY")))
+        if movie:
+            self.must_succeed("run", QUICK_LOOK, *SMALL, "--set", "render.size=[640,360]", "--output", self.folder / "run")
+        else:
+            self.run_small("run")
+        self.report("run")
+        page = self.folder / "run" / "report.html"
+        picture = self.folder / "page.png"
+        command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
+                   "--disable-dev-shm-usage", f"--user-data-dir={self.folder / 'profile'}", "--hide-scrollbars",
+                   "--virtual-time-budget=4000"]
+        # The browser's own view of the page: what it parsed, and whether the movie can be played.
+        probe = self.folder / "run" / "probe.html"
+        probe.write_text(page.read_text(encoding="utf-8").replace("</body>", """<script>
+            const movie = document.querySelector("video");
+            const tell = () => { document.title = ["plots", document.querySelectorAll("svg polyline").length, "movie",
+                movie ? movie.videoWidth + "x" + movie.videoHeight : "none"].join(" "); };
+            if (movie) movie.addEventListener("loadedmetadata", tell);
+            tell(); </script></body>"""), encoding="utf-8")
+        dump = subprocess.run([*command, "--dump-dom", probe.as_uri()], capture_output=True, text=True, timeout=120)
+        self.assertEqual(dump.returncode, 0, dump.stderr)
+        title = dump.stdout.split("<title>")[1].split("</title>")[0]
+        header = (self.folder / "run" / "melt_pool.csv").read_text().splitlines()[0]
+        isotherms = sum(name.startswith("length_m") for name in header.split(","))
+        self.assertIn(f"plots {4 * isotherms + 5} ", title)
+        self.assertIn("movie 640x360" if movie else "movie none", title)
+        shot = subprocess.run([*command, "--window-size=1200,2400", f"--screenshot={picture}", page.as_uri()],
+                              capture_output=True, text=True, timeout=120)
+        self.assertEqual(shot.returncode, 0, shot.stderr)
+        image = vtkPNGReader()
+        image.SetFileName(str(picture))
+        image.Update()
+        width, height, _ = image.GetOutput().GetDimensions()
+        self.assertEqual((width, height), (1200, 2400))
+        pixels = vtk_to_numpy(image.GetOutput().GetPointData().GetScalars())[:, :3].reshape(height, width, 3)
+        self.assertGreater(len(np.unique(pixels.reshape(-1, 3), axis=0)), 200)
+        # Something is drawn in each sixth of the page's height.
+        for part in np.array_split(pixels, 6):
+            self.assertGreater(part.std(), 2.0)
 
     def test_a_folder_without_a_run_is_refused(self):
         (self.folder / "empty").mkdir()

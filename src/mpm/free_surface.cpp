@@ -8,79 +8,190 @@
 namespace meltscope {
 namespace {
 
-/// Interpolates `field` to the particles, layout order; with `gradient`, |sum_i f_i grad N_ip| in 1/m
-/// instead.
-Field gather_to_particles(const Grid& grid, const Particles& particles, const Field& field, bool gradient) {
-    const LatticeStencils lattices;
-    Field result(particles.layout.size(), 0.0);
+/// Lane groups that may hold particles of the surface, and their entries laid end to end: what is worked out
+/// for these particles alone needs no array over all of them.
+struct SurfaceGroups {
+    std::vector<std::int64_t> group; ///< ascending
+    std::vector<std::int64_t> first; ///< of each lane group of the layout: its first entry here, -1: none
+    std::int64_t entries = 0;
+};
+
+/// phi_hat at a particle lies between those of the 27 nodes around it: a group is left out if they all are
+/// beyond the gate on one side.
+SurfaceGroups find_surface_groups(const Grid& grid, const Particles& particles, const Field& phi_hat) {
+    const auto& groups = particles.layout.groups;
+    SurfaceGroups near;
+    near.first.assign(groups.size(), -1);
 #pragma omp parallel for schedule(static)
-    for (std::size_t g = 0; g < particles.layout.groups.size(); ++g) {
-        const LaneGroup& group = particles.layout.groups[g];
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        Lanes least(1.0), most(-1.0);
+        for (int k = 0; k < 3; ++k)
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i) {
+                    const Lanes value =
+                        load(&phi_hat[groups[g].corner + i + j * grid.stride_y + k * grid.stride_z]);
+                    least = min(least, value);
+                    most = max(most, value);
+                }
+        if (any_of(least <= surface_gate && most >= -surface_gate))
+            near.first[g] = 0;
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g)
+        if (near.first[g] == 0) {
+            near.group.push_back(std::int64_t(g));
+            near.first[g] = near.entries;
+            near.entries += groups[g].slots * lane_count;
+        }
+    return near;
+}
+
+/// What the particles of the surface groups find at their places, entry by entry.
+struct AtParticles {
+    Field weight;                       ///< s_p, m^2; zero beyond the gate
+    Field normal_x, normal_y, normal_z; ///< grad phi_hat, per cell
+    Field distance;                     ///< phi, m
+    Field area;                         ///< a_p, m^2
+};
+
+AtParticles gather_at_particles(const Grid& grid, const Particles& particles, const FreeSurface& surface,
+                                const SurfaceGroups& near) {
+    AtParticles at;
+    for (Field* field : {&at.weight, &at.normal_x, &at.normal_y, &at.normal_z, &at.distance, &at.area})
+        field->assign(near.entries, 0.0);
+    const LatticeStencils lattices;
+#pragma omp parallel for schedule(static)
+    for (std::size_t n = 0; n < near.group.size(); ++n) {
+        const LaneGroup& group = particles.layout.groups[near.group[n]];
+        const std::int64_t shift = near.first[near.group[n]] - group.first_slot * lane_count;
         for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
             using Stencil = std::decay_t<decltype(stencil)>;
             typename Stencil::Points f;
-            stencil.gather(field.data() + group.corner, grid.stride_y, grid.stride_z, f);
+            stencil.gather(surface.phi_hat.data() + group.corner, grid.stride_y, grid.stride_z, f);
+            std::array<Lanes, Stencil::points> distance;
+            stencil.gather(surface.phi.data() + group.corner, grid.stride_y, grid.stride_z, distance);
             for (int p = 0; p < Stencil::points; ++p) {
-                const Lanes value = gradient
-                                        ? sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]) / grid.dx
-                                        : f.value[p];
-                store(value, &result[first + p * lane_count]);
+                const std::int64_t entry = first + p * lane_count;
+                const Lanes slope = sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]) / grid.dx;
+                store(select(abs(f.value[p]) <= surface_gate, slope * load(&particles.volume[entry]),
+                             Lanes(0.0)),
+                      &at.weight[entry + shift]);
+                store(f.x[p], &at.normal_x[entry + shift]);
+                store(f.y[p], &at.normal_y[entry + shift]);
+                store(f.z[p], &at.normal_z[entry + shift]);
+                store(distance[p], &at.distance[entry + shift]);
             }
         });
     }
-    return result;
+    return at;
+}
+
+/// sum_q N_iq s_q
+Field sum_at_nodes(const Grid& grid, const Particles& particles, const SurfaceGroups& near,
+                   const Field& weight) {
+    Field total(grid.size, 0.0);
+    const LatticeStencils lattices;
+    for_each_block(particles.layout, [&](const LaneBlock& block) {
+        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
+            if (near.first[g] < 0)
+                continue;
+            const LaneGroup& group = particles.layout.groups[g];
+            const std::int64_t shift = near.first[g] - group.first_slot * lane_count;
+            NodeSums sums;
+            for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+                std::array<Lanes, std::decay_t<decltype(stencil)>::points> s;
+                for (std::size_t p = 0; p < s.size(); ++p)
+                    s[p] = load(&weight[first + p * lane_count + shift]);
+                stencil.scatter_value(s, sums);
+            });
+            sums.add_to(total.data(), group.corner, grid.stride_y, grid.stride_z);
+        }
+    });
+    fold_ghosts(grid, Boundary{}, AtFixedFaces::leave, total);
+    return total;
+}
+
+/// a_p = s_p sum_i N_ip A_i / sum_q N_iq s_q
+void share_out_areas(const Grid& grid, const Particles& particles, const SurfaceGroups& near,
+                     const Field& area_by_weight, AtParticles& at) {
+    const LatticeStencils lattices;
+#pragma omp parallel for schedule(static)
+    for (std::size_t n = 0; n < near.group.size(); ++n) {
+        const LaneGroup& group = particles.layout.groups[near.group[n]];
+        const std::int64_t shift = near.first[near.group[n]] - group.first_slot * lane_count;
+        for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+            std::array<Lanes, std::decay_t<decltype(stencil)>::points> share;
+            stencil.gather(area_by_weight.data() + group.corner, grid.stride_y, grid.stride_z, share);
+            for (std::size_t p = 0; p < share.size(); ++p) {
+                const std::int64_t entry = first + std::int64_t(p) * lane_count + shift;
+                store(share[p] * load(&at.weight[entry]), &at.area[entry]);
+            }
+        });
+    }
+}
+
+/// The particles that have an area, one by one in the order of their ids, and their entries.
+struct Chosen {
+    std::vector<std::int64_t> particle, entry;
+};
+
+Chosen choose_particles(const Particles& particles, const SurfaceGroups& near, const Field& area) {
+    std::vector<std::int64_t> shift(particles.layout.slots, -1); // of each slot: its first entry
+    for (const std::int64_t g : near.group) {
+        const LaneGroup& group = particles.layout.groups[g];
+        for (std::int64_t slot = 0; slot < group.slots; ++slot)
+            shift[group.first_slot + slot] = near.first[g] + slot * lane_count;
+    }
+    constexpr std::int64_t chunk = 1 << 16;
+    std::vector<Chosen> of_chunk((particles.count() + chunk - 1) / chunk);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::size_t c = 0; c < of_chunk.size(); ++c)
+        for (std::int64_t q = std::int64_t(c) * chunk;
+             q < std::min(particles.count(), std::int64_t(c + 1) * chunk); ++q) {
+            const std::int64_t place = particles.layout.place[q];
+            const std::int64_t first = shift[place / lane_count];
+            if (first < 0 || !(area[first + place % lane_count] > 0.0))
+                continue;
+            of_chunk[c].particle.push_back(q);
+            of_chunk[c].entry.push_back(first + place % lane_count);
+        }
+    Chosen all;
+    for (const Chosen& some : of_chunk) {
+        all.particle.insert(all.particle.end(), some.particle.begin(), some.particle.end());
+        all.entry.insert(all.entry.end(), some.entry.begin(), some.entry.end());
+    }
+    return all;
 }
 
 /// A_i = dx^3 |grad phi_i| hat(phi_i), the box's share of the node's cell. The hat is (|n_x| + |n_y| + |n_z|)
 /// dx wide to either side, so that its sum over the nodes is that of a plane of any tilt: B. Engquist, A.-K.
 /// Tornberg, R. Tsai, J. Comput. Phys. 207 (2005) 28.
-Field node_areas(const Grid& grid, const Field& phi) {
-    Field area(grid.size, 0.0);
+double node_area(const Grid& grid, const Field& phi, std::int64_t i, std::int64_t j, std::int64_t k) {
     const double dx = grid.dx;
+    const std::int64_t at = grid.index(i, j, k);
+    if (std::abs(phi[at]) >= std::sqrt(3.0) * dx)
+        return 0.0;
+    const Vec3 gradient = Vec3(phi[at + 1] - phi[at - 1], phi[at + grid.stride_y] - phi[at - grid.stride_y],
+                               phi[at + grid.stride_z] - phi[at - grid.stride_z]) /
+                          (2.0 * dx);
+    const double slope = gradient.norm();
+    if (slope == 0.0)
+        return 0.0;
+    const double width = dx * gradient.lpNorm<1>() / slope;
+    const double hat = std::max(0.0, 1.0 - std::abs(phi[at]) / width) / width;
+    return dx * dx * dx * grid.share_in_box(i, j, k) * slope * hat;
+}
+
+/// Turns sum_q N_iq s_q into A_i / sum_q N_iq s_q.
+void divide_areas_by(const Grid& grid, const Field& phi, Field& total) {
 #pragma omp parallel for schedule(static)
     for (std::int64_t k = 0; k <= grid.cells[2]; ++k)
         for (std::int64_t j = 0; j <= grid.cells[1]; ++j)
             for (std::int64_t i = 0; i <= grid.cells[0]; ++i) {
-                const std::int64_t at = grid.index(i, j, k);
-                if (std::abs(phi[at]) >= std::sqrt(3.0) * dx)
-                    continue;
-                const Vec3 gradient =
-                    Vec3(phi[at + 1] - phi[at - 1], phi[at + grid.stride_y] - phi[at - grid.stride_y],
-                         phi[at + grid.stride_z] - phi[at - grid.stride_z]) /
-                    (2.0 * dx);
-                const double slope = gradient.norm();
-                if (slope == 0.0)
-                    continue;
-                const double width = dx * gradient.lpNorm<1>() / slope;
-                const double hat = std::max(0.0, 1.0 - std::abs(phi[at]) / width) / width;
-                area[at] = dx * dx * dx * grid.share_in_box(i, j, k) * slope * hat;
+                double& value = total[grid.index(i, j, k)];
+                if (value > 0.0)
+                    value = node_area(grid, phi, i, j, k) / value;
             }
-    return area;
-}
-
-/// The value and the gradient (per m) of a nodal field at one point, by the B-spline.
-struct Sample {
-    double value;
-    Vec3 gradient;
-};
-
-Sample sample(const Grid& grid, const Field& f, const Vec3& point) {
-    const BinPlace bin = bin_place(grid, point);
-    const std::array<BSpline<double>, 3> n{BSpline<double>(bin.offset[0]), BSpline<double>(bin.offset[1]),
-                                           BSpline<double>(bin.offset[2])};
-    Sample result{0.0, Vec3::Zero()};
-    for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j)
-            for (int i = 0; i < 3; ++i) {
-                const double value =
-                    f[grid.index(bin.node[0] + i - 1, bin.node[1] + j - 1, bin.node[2] + k - 1)];
-                result.value += value * n[0].value[i] * n[1].value[j] * n[2].value[k];
-                result.gradient += value * Vec3(n[0].derivative[i] * n[1].value[j] * n[2].value[k],
-                                                n[0].value[i] * n[1].derivative[j] * n[2].value[k],
-                                                n[0].value[i] * n[1].value[j] * n[2].derivative[k]);
-            }
-    result.gradient /= grid.dx;
-    return result;
+    mirror_ghosts(grid, Boundary{}, total);
 }
 
 /// Lays out the points where the heat goes in and finds their weights' normalization.
@@ -88,11 +199,6 @@ void lay_out(const Grid& grid, const Nodes& nodes, std::span<const Vec3> points,
     elements.layout = make_lane_layout(grid, points, {}, 0);
     for (Field* field : {&elements.offset_x, &elements.offset_y, &elements.offset_z, &elements.normalization})
         field->assign(elements.layout.size(), 0.0);
-    Field present(grid.size, 0.0);
-    for (std::int64_t i = 0; i < grid.size; ++i)
-        present[i] = nodes.mass[i] > 0.0 ? 1.0 : 0.0;
-    // Beyond faces of fixed temperature ghosts have a mass of their own.
-    mirror_ghosts(grid, nodes.boundary, present);
 #pragma omp parallel for schedule(static)
     for (std::size_t s = 0; s < points.size(); ++s) {
         const BinPlace bin = bin_place(grid, points[s]);
@@ -100,8 +206,18 @@ void lay_out(const Grid& grid, const Nodes& nodes, std::span<const Vec3> points,
         elements.offset_x[at] = bin.offset[0];
         elements.offset_y[at] = bin.offset[1];
         elements.offset_z[at] = bin.offset[2];
-        elements.normalization[at] = 1.0 / sample(grid, present, points[s]).value;
+        elements.normalization[at] = 1.0;
     }
+    Field present(grid.size, 0.0);
+#pragma omp parallel for schedule(static)
+    for (std::int64_t i = 0; i < grid.size; ++i)
+        present[i] = nodes.mass[i] > 0.0 ? 1.0 : 0.0;
+    // Beyond faces of fixed temperature ghosts have a mass of their own.
+    mirror_ghosts(grid, nodes.boundary, present);
+    std::vector<double> sum;
+    interpolate_to_surface(grid, elements, present, sum);
+    for (std::size_t s = 0; s < points.size(); ++s)
+        elements.normalization[elements.layout.place[s]] = 1.0 / sum[s];
 }
 
 } // namespace
@@ -112,42 +228,27 @@ FreeSurface find_free_surface(const Grid& grid, const Particles& particles, cons
     surface.phi = signed_distance(grid, particles, options);
     surface.phi_hat = regularized(grid, surface.phi, options);
 
-    // s_p, and sum_q N_iq s_q
-    const Field phi_hat = gather_to_particles(grid, particles, surface.phi_hat, false);
-    Field weight = gather_to_particles(grid, particles, surface.phi_hat, true);
-#pragma omp parallel for schedule(static)
-    for (std::size_t at = 0; at < weight.size(); ++at)
-        weight[at] = std::abs(phi_hat[at]) <= surface_gate ? weight[at] * particles.volume[at] : 0.0;
-    Field total(grid.size, 0.0);
-    scatter_to_nodes(grid, particles, weight, total);
-    fold_ghosts(grid, Boundary{}, AtFixedFaces::leave, total);
+    const SurfaceGroups near = find_surface_groups(grid, particles, surface.phi_hat);
+    AtParticles at = gather_at_particles(grid, particles, surface, near);
+    Field nodal = sum_at_nodes(grid, particles, near, at.weight);
+    divide_areas_by(grid, surface.phi, nodal);
+    share_out_areas(grid, particles, near, nodal, at);
 
-    // a_p = s_p sum_i N_ip A_i / sum_q N_iq s_q
-    Field ratio = node_areas(grid, surface.phi);
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < grid.size; ++i)
-        ratio[i] = total[i] > 0.0 ? ratio[i] / total[i] : 0.0;
-    mirror_ghosts(grid, Boundary{}, ratio);
-    const Field area_share = gather_to_particles(grid, particles, ratio, false);
-
+    Chosen chosen = choose_particles(particles, near, at.area);
     SurfaceElements& elements = surface.elements;
-    for (std::int64_t q = 0; q < particles.count(); ++q) {
-        const std::int64_t at = particles.layout.place[q];
-        if (weight[at] * area_share[at] > 0.0) {
-            elements.particle.push_back(q);
-            elements.area.push_back(weight[at] * area_share[at]);
-        }
-    }
+    elements.particle = std::move(chosen.particle);
+    elements.area.resize(elements.particle.size());
     elements.point.resize(elements.particle.size());
     elements.normal.resize(elements.particle.size());
 #pragma omp parallel for schedule(static)
     for (std::size_t s = 0; s < elements.particle.size(); ++s) {
+        const std::int64_t entry = chosen.entry[s];
         const Vec3& x = particles.position[elements.particle[s]];
-        const Vec3 normal = sample(grid, surface.phi_hat, x).gradient.normalized();
+        const Vec3 normal = Vec3(at.normal_x[entry], at.normal_y[entry], at.normal_z[entry]).normalized();
+        elements.area[s] = at.area[entry];
         elements.normal[s] = normal;
-        elements.point[s] = (x - sample(grid, surface.phi, x).value * normal)
-                                .cwiseMax(grid.origin)
-                                .cwiseMin(grid.upper_corner());
+        elements.point[s] =
+            (x - at.distance[entry] * normal).cwiseMax(grid.origin).cwiseMin(grid.upper_corner());
     }
     std::vector<Vec3> places = elements.point;
     if (!at_surface)
@@ -155,59 +256,6 @@ FreeSurface find_free_surface(const Grid& grid, const Particles& particles, cons
             places[s] = particles.position[elements.particle[s]];
     lay_out(grid, nodes, places, elements);
     return surface;
-}
-
-void deposit(const Grid& grid, const SurfaceElements& elements, std::span<const double> energy,
-             Nodes& nodes) {
-    Field in_layout(elements.layout.size(), 0.0);
-    for (std::size_t s = 0; s < energy.size(); ++s) {
-        const std::int64_t at = elements.layout.place[s];
-        in_layout[at] = energy[s] * elements.normalization[at];
-    }
-    // A node without mass takes its share too, which the normalization has given to the others; step 6
-    // ignores it.
-    for_each_block(elements.layout, [&](const LaneBlock& block) {
-        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
-            const LaneGroup& group = elements.layout.groups[g];
-            NodeSums sums;
-            bool any = false;
-            for (std::int64_t slot = group.first_slot; slot < group.first_slot + group.slots; ++slot) {
-                const Lanes joule = load(&in_layout[slot * lane_count]);
-                if (all_of(joule == 0.0))
-                    continue;
-                any = true;
-                point_stencil(elements.offset_x.data(), elements.offset_y.data(), elements.offset_z.data(),
-                              slot)
-                    .scatter_value({joule}, sums);
-            }
-            if (any)
-                sums.add_to(nodes.increment.data(), group.corner, grid.stride_y, grid.stride_z);
-        }
-    });
-}
-
-void interpolate_to_surface(const Grid& grid, const SurfaceElements& elements, const Field& field,
-                            std::vector<double>& interpolated) {
-    Field in_layout(elements.layout.size(), 0.0);
-#pragma omp parallel for schedule(static)
-    for (std::size_t g = 0; g < elements.layout.groups.size(); ++g) {
-        const LaneGroup& group = elements.layout.groups[g];
-        for (std::int64_t slot = group.first_slot; slot < group.first_slot + group.slots; ++slot) {
-            std::array<Lanes, 1> value;
-            point_stencil(elements.offset_x.data(), elements.offset_y.data(), elements.offset_z.data(), slot)
-                .gather(field.data() + group.corner, grid.stride_y, grid.stride_z, value);
-            store(value[0] * load(&elements.normalization[slot * lane_count]), &in_layout[slot * lane_count]);
-        }
-    }
-    interpolated.resize(elements.particle.size());
-#pragma omp parallel for schedule(static)
-    for (std::size_t s = 0; s < interpolated.size(); ++s)
-        interpolated[s] = in_layout[elements.layout.place[s]];
-}
-
-void surface_temperatures(const Grid& grid, const SurfaceElements& elements, const Nodes& nodes,
-                          std::vector<double>& temperature) {
-    interpolate_to_surface(grid, elements, nodes.temperature, temperature);
 }
 
 } // namespace meltscope

@@ -68,6 +68,21 @@ int lattice_index(const std::vector<double>& offsets, const std::array<double, 3
     return index;
 }
 
+/// The bin of a point; false if it lies outside the box.
+bool find_bin(const Grid& grid, const Vec3& point, BinPlace& place) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double cells_in = (point[axis] - grid.origin[axis]) / grid.dx;
+        const double nearest = std::floor(cells_in + 0.5 + border_tolerance);
+        if (!(nearest >= 0.0 && nearest <= double(grid.cells[axis])))
+            return false;
+        place.node[axis] = std::int32_t(nearest);
+        const double offset = cells_in - nearest;
+        // On the border exactly, the third node's weight is exactly zero and it gets no mass from round-off.
+        place.offset[axis] = std::abs(offset + 0.5) <= border_tolerance ? -0.5 : offset;
+    }
+    return true;
+}
+
 /// One bin's points of one kind.
 struct BinFill {
     std::int32_t count = 0;
@@ -88,17 +103,9 @@ std::vector<double> lattice_offsets(int n) {
 
 BinPlace bin_place(const Grid& grid, const Vec3& point) {
     BinPlace place;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double cells_in = (point[axis] - grid.origin[axis]) / grid.dx;
-        const double nearest = std::floor(cells_in + 0.5 + border_tolerance);
-        if (!(nearest >= 0.0 && nearest <= double(grid.cells[axis])))
-            throw std::out_of_range(fmt::format("the point ({}, {}, {}) m lies outside the domain", point[0],
-                                                point[1], point[2]));
-        place.node[axis] = std::int32_t(nearest);
-        const double offset = cells_in - nearest;
-        // On the border exactly, the third node's weight is exactly zero and it gets no mass from round-off.
-        place.offset[axis] = std::abs(offset + 0.5) <= border_tolerance ? -0.5 : offset;
-    }
+    if (!find_bin(grid, point, place))
+        throw std::out_of_range(
+            fmt::format("the point ({}, {}, {}) m lies outside the domain", point[0], point[1], point[2]));
     return place;
 }
 
@@ -111,22 +118,33 @@ LaneLayout make_lane_layout(const Grid& grid, std::span<const Vec3> points,
     const std::vector<double> offsets = lattice > 0 ? lattice_offsets(lattice) : std::vector<double>{};
     const std::int32_t lattice_points = lattice * lattice * lattice;
 
-    // Fill of every bin, in the order in which groups are laid out: row, group in the row, kind, lane.
-    std::vector<BinFill> fill(order.rows.size() * groups_x * kinds * lane_count);
     std::vector<std::int64_t> bin_of(count);
     std::vector<std::int32_t> rank_in_bin(count), lattice_slot(lattice > 0 ? count : 0);
+    bool outside = false; // an exception must not leave a parallel region
+#pragma omp parallel for schedule(static) reduction(|| : outside)
     for (std::int64_t p = 0; p < count; ++p) {
-        const BinPlace place = bin_place(grid, points[p]);
+        BinPlace place;
+        if (!find_bin(grid, points[p], place)) {
+            outside = true;
+            continue;
+        }
         const std::int64_t row = order.rank[place.node[1] + place.node[2] * rows_y];
         const std::int64_t group =
             (row * groups_x + place.node[0] / lane_count) * kinds + (kind.empty() ? 0 : kind[p]);
         bin_of[p] = group * lane_count + place.node[0] % lane_count;
+        if (lattice > 0)
+            lattice_slot[p] = lattice_index(offsets, place.offset);
+    }
+    if (outside)
+        for (const Vec3& point : points)
+            bin_place(grid, point); // says which
+
+    // Fill of every bin, in the order in which groups are laid out: row, group in the row, kind, lane.
+    std::vector<BinFill> fill(order.rows.size() * groups_x * kinds * lane_count);
+    for (std::int64_t p = 0; p < count; ++p) {
         BinFill& bin = fill[bin_of[p]];
         rank_in_bin[p] = bin.count++;
-        if (lattice > 0) {
-            lattice_slot[p] = lattice_index(offsets, place.offset);
-            bin.off_lattice |= lattice_slot[p] < 0;
-        }
+        bin.off_lattice |= lattice > 0 && lattice_slot[p] < 0;
     }
 
     LaneLayout layout;

@@ -1,11 +1,14 @@
 #include "meltscope/mpm/level_set.hpp"
 
+#include "foot_sweep.hpp"
+
 #include "meltscope/mpm/boundary.hpp"
 #include "meltscope/mpm/nodes.hpp"
 #include "meltscope/mpm/trilinear.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace meltscope {
 namespace {
@@ -21,10 +24,8 @@ constexpr double foot_tolerance = 0.4;
 /// A particle this far outside the surface, in cells, has been smoothed away and gets a ball of its own.
 constexpr double smoothed_away = 0.25;
 
-struct Foot {
-    Vec3 point;  ///< m, on the surface
-    Vec3 normal; ///< unit, out of the material
-};
+/// Where the volume fraction differs from one by no more than round-off, no surface is near.
+constexpr double round_off = 1e-13;
 
 /// Walks over the nodes of the box.
 template <class Work>
@@ -49,7 +50,8 @@ Field smoothed_distance(const Grid& grid, const Particles& particles) {
     fold_ghosts(grid, Boundary{}, AtFixedFaces::leave, fraction);
     const double cell = grid.dx * grid.dx * grid.dx;
     for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
-        fraction[at] = distance_of_fraction(fraction[at] / (cell * grid.share_in_box(i, j, k)));
+        const double filled = fraction[at] / (cell * grid.share_in_box(i, j, k));
+        fraction[at] = filled >= 1.0 - round_off ? -1.5 : distance_of_fraction(filled);
     });
     mirror_ghosts(grid, Boundary{}, fraction);
     return fraction;
@@ -87,78 +89,6 @@ std::vector<Foot> find_feet(const Grid& grid, const Field& distance, std::vector
     return feet;
 }
 
-/// Hands the nearest foot from node to node along each axis, there and back, twice over.
-class FootSweep {
-  public:
-    FootSweep(const Grid& grid, const std::vector<Foot>& feet, std::vector<std::int32_t>& nearest)
-        : grid_(grid), feet_(feet), nearest_(nearest), squared_(grid.size, reach() * reach()) {
-        for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
-            if (nearest_[at] >= 0)
-                squared_[at] = (grid.position(i, j, k) - feet_[nearest_[at]].point).squaredNorm();
-        });
-        for (int round = 0; round < 2; ++round)
-            for (int axis = 0; axis < 3; ++axis)
-                along(axis);
-        all_around();
-    }
-
-  private:
-    double reach() const { return (level_set_band + 0.5) * grid_.dx; }
-
-    void along(int axis) {
-        const std::array<std::int64_t, 3> stride{1, grid_.stride_y, grid_.stride_z};
-        const int u = axis == 0 ? 1 : 0,
-                  v = axis == 2 ? 1 : 2; // rows across the axis; u varies fastest in memory
-        const std::int64_t last = grid_.cells[axis];
-#pragma omp parallel for schedule(static)
-        for (std::int64_t q = 0; q <= grid_.cells[v]; ++q) {
-            const auto visit = [&](std::int64_t n, std::int64_t from) {
-                for (std::int64_t p = 0; p <= grid_.cells[u]; ++p) {
-                    Index3 node;
-                    node[axis] = n;
-                    node[u] = p;
-                    node[v] = q;
-                    const std::int64_t at = grid_.index(node[0], node[1], node[2]);
-                    offer(node, at, nearest_[at + from * stride[axis]]);
-                }
-            };
-            for (std::int64_t n = 1; n <= last; ++n)
-                visit(n, -1);
-            for (std::int64_t n = last - 1; n >= 0; --n)
-                visit(n, 1);
-        }
-    }
-
-    /// Every node looks at the feet of its 26 neighbours: what a row hands on along an axis can stop short of
-    /// a node whose own foot lies askew.
-    void all_around() {
-        const std::vector<std::int32_t> before = nearest_;
-        for_each_node(grid_, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
-            for (std::int64_t c = std::max<std::int64_t>(k - 1, 0); c <= std::min(k + 1, grid_.cells[2]); ++c)
-                for (std::int64_t b = std::max<std::int64_t>(j - 1, 0); b <= std::min(j + 1, grid_.cells[1]);
-                     ++b)
-                    for (std::int64_t a = std::max<std::int64_t>(i - 1, 0);
-                         a <= std::min(i + 1, grid_.cells[0]); ++a)
-                        offer({i, j, k}, at, before[grid_.index(a, b, c)]);
-        });
-    }
-
-    void offer(const Index3& node, std::int64_t at, std::int32_t foot) {
-        if (foot < 0 || foot == nearest_[at])
-            return;
-        const double squared = (grid_.position(node[0], node[1], node[2]) - feet_[foot].point).squaredNorm();
-        if (squared < squared_[at]) {
-            squared_[at] = squared;
-            nearest_[at] = foot;
-        }
-    }
-
-    const Grid& grid_;
-    const std::vector<Foot>& feet_;
-    std::vector<std::int32_t>& nearest_;
-    std::vector<double> squared_; // m^2
-};
-
 /// Distance in m from `point` to the surface near `foot`: to the tangent plane, corrected by what the
 /// smoothed fraction says at the point met there.
 double distance_near(const Grid& grid, const Field& smoothed, const Vec3& point, const Foot& foot) {
@@ -175,10 +105,11 @@ double distance_near(const Grid& grid, const Field& smoothed, const Vec3& point,
 /// Smoothing draws the level one half of a curved surface towards its centre of curvature, by half the
 /// B-spline's variance (dx^2/4 along each axis) times div n = laplacian of phi: phi -= dx^2/8 laplacian(phi)
 /// puts it back. Second differences over two cells, so that the steps of a lattice do not pass for curvature.
-void undo_shift_by_curvature(const Grid& grid, Field& phi) {
-    Field shift(grid.size, 0.0);
+void undo_shift_by_curvature(const Grid& grid, const NodeBand& band, Field& phi) {
+    const auto shift = std::make_unique_for_overwrite<double[]>(grid.size);
     const std::array<std::int64_t, 3> stride{1, grid.stride_y, grid.stride_z};
-    for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
+    band.for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
+        shift[at] = 0.0;
         if (std::abs(phi[at]) > 3.0 * grid.dx)
             return;
         const std::array<std::int64_t, 3> node{i, j, k};
@@ -193,18 +124,46 @@ void undo_shift_by_curvature(const Grid& grid, Field& phi) {
         }
         shift[at] = std::clamp(laplacian, -grid.dx, grid.dx) / 8.0;
     });
-    for_each_node(grid,
-                  [&](std::int64_t, std::int64_t, std::int64_t, std::int64_t at) { phi[at] -= shift[at]; });
+    band.for_each_node(
+        grid, [&](std::int64_t, std::int64_t, std::int64_t, std::int64_t at) { phi[at] -= shift[at]; });
+}
+
+/// Particles that stand outside the smoothed surface, ascending. Each thread looks through a range of its
+/// own, and only at those of which one of the 27 nodes around lies outside.
+std::vector<std::int64_t> lone_particles(const Grid& grid, const Particles& particles, const Field& phi) {
+    const double outside = smoothed_away * grid.dx;
+    const auto& groups = particles.layout.groups;
+    std::vector<char> deep(particles.layout.slots, 1); // of each slot
+#pragma omp parallel for schedule(static)
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        Lanes most(-outside);
+        for (int k = 0; k < 3; ++k)
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i)
+                    most =
+                        max(most, load(&phi[groups[g].corner + i + j * grid.stride_y + k * grid.stride_z]));
+        if (any_of(most > outside))
+            std::fill_n(deep.begin() + groups[g].first_slot, groups[g].slots, char(0));
+    }
+    constexpr std::int64_t chunk = 1 << 16;
+    std::vector<std::vector<std::int64_t>> lone((particles.count() + chunk - 1) / chunk);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::size_t c = 0; c < lone.size(); ++c)
+        for (std::int64_t q = std::int64_t(c) * chunk;
+             q < std::min(particles.count(), std::int64_t(c + 1) * chunk); ++q)
+            if (!deep[particles.layout.place[q] / lane_count] &&
+                trilinear(grid, phi, particles.position[q]) > outside)
+                lone[c].push_back(q);
+    std::vector<std::int64_t> all;
+    for (const auto& of_chunk : lone)
+        all.insert(all.end(), of_chunk.begin(), of_chunk.end());
+    return all;
 }
 
 /// Particles that stand outside the smoothed surface become balls, united with the rest.
 void unite_lone_particles(const Grid& grid, const Particles& particles, const LevelSetOptions& options,
                           Field& phi) {
-    std::vector<std::int64_t> lone;
-    for (std::int64_t q = 0; q < particles.count(); ++q)
-        if (trilinear(grid, phi, particles.position[q]) > smoothed_away * grid.dx)
-            lone.push_back(q);
-    for (const std::int64_t q : lone) {
+    for (const std::int64_t q : lone_particles(grid, particles, phi)) {
         const Vec3& centre = particles.position[q];
         const double radius = (options.radius - 0.5) * std::cbrt(particles.volume[particles.layout.place[q]]);
         const BinPlace bin = bin_place(grid, centre);
@@ -241,18 +200,20 @@ Field signed_distance(const Grid& grid, const Particles& particles, const LevelS
     const Field smoothed = smoothed_distance(grid, particles);
     std::vector<std::int32_t> nearest;
     const std::vector<Foot> feet = find_feet(grid, smoothed, nearest);
-    FootSweep(grid, feet, nearest);
+    const double far = level_set_band * grid.dx;
+    const NodeBand band = sweep_feet(grid, feet, far + 0.5 * grid.dx, nearest);
 
     Field phi(grid.size, 0.0);
-    for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
-        const double sign = smoothed[at] < 0.0 ? -1.0 : 1.0;
-        double distance = level_set_band * grid.dx;
-        if (nearest[at] >= 0)
-            distance =
-                std::min(distance, distance_near(grid, smoothed, grid.position(i, j, k), feet[nearest[at]]));
-        phi[at] = sign * distance;
+    for_each_node(grid, [&](std::int64_t, std::int64_t, std::int64_t, std::int64_t at) {
+        phi[at] = smoothed[at] < 0.0 ? -far : far;
     });
-    undo_shift_by_curvature(grid, phi);
+    band.for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
+        if (nearest[at] >= 0)
+            phi[at] = std::copysign(
+                std::min(far, distance_near(grid, smoothed, grid.position(i, j, k), feet[nearest[at]])),
+                phi[at]);
+    });
+    undo_shift_by_curvature(grid, band, phi);
     unite_lone_particles(grid, particles, options, phi);
     mirror_ghosts(grid, Boundary{}, phi);
     return phi;
@@ -260,10 +221,13 @@ Field signed_distance(const Grid& grid, const Particles& particles, const LevelS
 
 Field regularized(const Grid& grid, const Field& phi, const LevelSetOptions& options) {
     const double epsilon = options.epsilon * grid.dx;
+    const auto profile = [&](double distance) { return 0.5 - 1.0 / (1.0 + std::exp(distance / epsilon)); };
+    // Most nodes are far from the surface, where phi has one of two values.
+    const double far = level_set_band * grid.dx, inside = profile(-far), outside = profile(far);
     Field phi_hat(grid.size, 0.0);
 #pragma omp parallel for schedule(static)
     for (std::int64_t at = 0; at < grid.size; ++at)
-        phi_hat[at] = 0.5 - 1.0 / (1.0 + std::exp(phi[at] / epsilon));
+        phi_hat[at] = phi[at] == -far ? inside : phi[at] == far ? outside : profile(phi[at]);
     return phi_hat;
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace meltscope {
 namespace {
@@ -56,40 +57,6 @@ double distance_to(const Shape& shape, const Vec3& point) {
     const Box box = bounding_box(shape); // solids: their bounding box
     const Vec3 outside = (box.min - point).cwiseMax(point - box.max);
     return std::min(outside.maxCoeff(), 0.0) + outside.cwiseMax(0.0).norm();
-}
-
-/// The bodies' shapes, files read and powder packed onto what the earlier bodies are.
-std::vector<Shape> make_shapes(const Scenario& scenario) {
-    const Box domain{scenario.domain.min, scenario.domain.max};
-    std::vector<Shape> shapes;
-    for (const BodySpec& body : scenario.bodies) {
-        const auto make = [&](const auto& spec) -> Shape {
-            using Spec = std::decay_t<decltype(spec)>;
-            if constexpr (std::is_same_v<Spec, BallsSpec>) {
-                return Balls{read_ball_file(spec.file, domain)};
-            } else if constexpr (std::is_same_v<Spec, StlSpec>) {
-                return read_stl(spec.file, spec.scale);
-            } else if constexpr (std::is_same_v<Spec, PowderSpec>) {
-                PowderGround ground;
-                if (!shapes.empty())
-                    ground.distance = [&shapes](const Vec3& point) {
-                        double nearest = 1e300;
-                        for (const Shape& shape : shapes)
-                            nearest = std::min(nearest, distance_to(shape, point));
-                        return nearest;
-                    };
-                return Balls{pack_powder(spec, ground)};
-            } else {
-                return spec;
-            }
-        };
-        try {
-            shapes.push_back(std::visit(make, body.shape));
-        } catch (const GeometryError& error) {
-            throw GeometryError(fmt::format("body[{}]: {}", shapes.size(), error.what()));
-        }
-    }
-    return shapes;
 }
 
 /// Refuses a body that has no part in the run.
@@ -150,48 +117,118 @@ int lattice_of(const Scenario& scenario) {
     return int(std::lround(std::cbrt(double(scenario.domain.particles_per_cell))));
 }
 
+std::vector<Shape> make_shapes(const Scenario& scenario) {
+    const Box domain{scenario.domain.min, scenario.domain.max};
+    std::vector<Shape> shapes;
+    for (const BodySpec& body : scenario.bodies) {
+        const auto make = [&](const auto& spec) -> Shape {
+            using Spec = std::decay_t<decltype(spec)>;
+            if constexpr (std::is_same_v<Spec, BallsSpec>) {
+                return Balls{read_ball_file(spec.file, domain)};
+            } else if constexpr (std::is_same_v<Spec, StlSpec>) {
+                return read_stl(spec.file, spec.scale);
+            } else if constexpr (std::is_same_v<Spec, PowderSpec>) {
+                PowderGround ground;
+                if (!shapes.empty())
+                    ground.distance = [&shapes](const Vec3& point) {
+                        double nearest = 1e300;
+                        for (const Shape& shape : shapes)
+                            nearest = std::min(nearest, distance_to(shape, point));
+                        return nearest;
+                    };
+                return Balls{pack_powder(spec, ground)};
+            } else {
+                return spec;
+            }
+        };
+        try {
+            shapes.push_back(std::visit(make, body.shape));
+        } catch (const GeometryError& error) {
+            throw GeometryError(fmt::format("body[{}]: {}", shapes.size(), error.what()));
+        }
+    }
+    return shapes;
+}
+
 ParticleList fill_scenario(const Scenario& scenario) {
-    const std::vector<Shape> shapes = make_shapes(scenario);
+    return fill_scenario(scenario, make_shapes(scenario));
+}
+
+ParticleList fill_scenario(const Scenario& scenario, std::span<const Shape> shapes) {
     const int n = lattice_of(scenario);
     const double spacing = scenario.domain.cell_size / n;
     Lattice lattice;
     lattice.origin = scenario.domain.min + Vec3::Constant(0.5 * spacing);
     lattice.spacing = spacing;
     lattice.count = scenario.domain.cells() * n;
+    const std::int64_t layers = lattice.count[2], sites_in_layer = lattice.count[0] * lattice.count[1];
 
-    std::vector<std::size_t> material;
-    std::vector<double> energy;
+    struct Content { // of a body's sites
+        std::int16_t material;
+        double mass, energy;
+        char powder;
+    };
+    const double volume = spacing * spacing * spacing;
+    std::vector<Content> contents;
+    bool has_powder = false;
     for (const BodySpec& body : scenario.bodies) {
-        material.push_back(material_index(scenario, body.material));
-        energy.push_back(
-            make_equation_of_state(scenario.materials[material.back()]).energy(body.temperature));
+        const std::size_t index = material_index(scenario, body.material);
+        const Material& material = scenario.materials[index];
+        contents.push_back({std::int16_t(index),
+                            volume * material.density * body.powder_packing.value_or(1.0),
+                            make_equation_of_state(material).energy(body.temperature),
+                            char(body.powder_packing.has_value())});
+        has_powder = has_powder || body.powder_packing;
     }
 
+    // The layers' particles are counted first: so all arrays are made once, and all threads may fill them.
     const LatticeFill filling(shapes, lattice);
     require_sites_for_all(scenario, filling, lattice);
-    const double volume = spacing * spacing * spacing;
-    const bool has_powder = std::any_of(scenario.bodies.begin(), scenario.bodies.end(),
-                                        [](const BodySpec& body) { return body.powder_packing.has_value(); });
+    std::vector<std::int64_t> start(layers + 1, 0);
+#pragma omp parallel
+    {
+        std::vector<std::int16_t> sites(sites_in_layer);
+#pragma omp for schedule(dynamic)
+        for (std::int64_t k = 0; k < layers; ++k) {
+            filling.layer(k, sites);
+            start[k + 1] =
+                std::count_if(sites.begin(), sites.end(), [](std::int16_t body) { return body >= 0; });
+        }
+    }
+    std::partial_sum(start.begin(), start.end(), start.begin());
+
     ParticleList list;
-    std::vector<std::int16_t> sites(lattice.count[0] * lattice.count[1]);
-    for (std::int64_t k = 0; k < lattice.count[2]; ++k) {
-        filling.layer(k, sites);
-        for (std::int64_t j = 0; j < lattice.count[1]; ++j)
-            for (std::int64_t i = 0; i < lattice.count[0]; ++i) {
-                const std::int16_t body = sites[i + lattice.count[0] * j];
-                if (body < 0)
-                    continue;
-                list.position.push_back(lattice.origin + spacing * Vec3(double(i), double(j), double(k)));
-                list.volume.push_back(volume);
-                const std::optional<double>& packing = scenario.bodies[body].powder_packing;
-                list.mass.push_back(volume * scenario.materials[material[body]].density *
-                                    packing.value_or(1.0));
-                if (has_powder)
-                    list.powder.push_back(packing.has_value());
-                list.specific_energy.push_back(energy[body]);
-                list.id.push_back(list.size() - 1);
-                list.material.push_back(std::int16_t(material[body]));
-            }
+    const std::int64_t count = start[layers];
+    list.position.resize(count);
+    list.mass.resize(count);
+    list.volume.assign(count, volume);
+    list.specific_energy.resize(count);
+    list.id.resize(count);
+    list.material.resize(count);
+    list.powder.resize(has_powder ? count : 0);
+#pragma omp parallel
+    {
+        std::vector<std::int16_t> sites(sites_in_layer);
+#pragma omp for schedule(dynamic)
+        for (std::int64_t k = 0; k < layers; ++k) {
+            filling.layer(k, sites);
+            std::int64_t q = start[k];
+            for (std::int64_t j = 0; j < lattice.count[1]; ++j)
+                for (std::int64_t i = 0; i < lattice.count[0]; ++i) {
+                    const std::int16_t body = sites[i + lattice.count[0] * j];
+                    if (body < 0)
+                        continue;
+                    const Content& content = contents[body];
+                    list.position[q] = lattice.origin + spacing * Vec3(double(i), double(j), double(k));
+                    list.mass[q] = content.mass;
+                    list.specific_energy[q] = content.energy;
+                    list.id[q] = q;
+                    list.material[q] = content.material;
+                    if (has_powder)
+                        list.powder[q] = content.powder;
+                    ++q;
+                }
+        }
     }
     return list;
 }

@@ -1,6 +1,9 @@
 """What the program says to right and wrong usage, and its exit codes."""
 
 import json
+import os
+import re
+import resource
 import tomllib
 import unittest
 
@@ -57,6 +60,18 @@ class Refusals(ProgramTest):
         self.assertIn("memory", message)
         self.assertFalse((self.folder / "runs").exists())
 
+    def test_400_million_particles_are_refused_with_an_estimate_before_memory_is_taken(self):
+        if os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") > 50e9:
+            self.skipTest("this machine can hold them")
+        gigabytes = 4  # what the arrays need would break this limit, and the program would end otherwise
+        refused = meltscope("bench", "--scene", "block", "--particles", "400000000", preexec_fn=lambda:
+                            resource.setrlimit(resource.RLIMIT_AS, (gigabytes << 30, gigabytes << 30)))
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        particles = re.search(r"up to (\d+) particles", refused.stderr)
+        self.assertAlmostEqual(int(particles[1]) / 4e8, 1.0, delta=0.05)
+        for word in ("GB", "domain.cell_size", "domain.particles_per_cell"):
+            self.assertIn(word, refused.stderr)
+
     def test_times_and_limits_without_sense_are_refused(self):
         self.assertIn("--until", self.must_refuse("run", QUICK_LOOK, "--until", "soon"))
         self.assertIn("HH:MM:SS", self.must_refuse("run", QUICK_LOOK, "--wall-limit", "1h"))
@@ -88,12 +103,23 @@ class Check(ProgramTest):
 
 class Bench(ProgramTest):
     def test_json_has_the_speed_the_probes_and_the_phases(self):
-        figures = json.loads(self.must_succeed("bench", "--particles", "20000", "--json").stdout)
+        figures = json.loads(self.must_succeed("bench", "--particles", "20000", "--scene", "block", "--json").stdout)
         for key in ("particle_steps_per_s", "fma_gflops", "triad_gb_per_s"):
             self.assertGreater(figures[key], 0.0, key)
         self.assertEqual(figures["threads"], 1)
         self.assertGreater(figures["particles"], 10000)
-        self.assertLessEqual({"favre", "diffuse", "deposit", "update", "g2p"}, set(figures["seconds"]))
+        self.assertLessEqual({"favre", "diffuse", "laser", "losses", "update", "g2p"}, set(figures["seconds"]))
+        [block] = figures["scenes"]
+        self.assertEqual([form["transfer"] for form in block["forms"]], ["affine", "flip"])
+        self.assertGreater(block["memory"]["held_bytes_a_particle"], 50.0)
+        self.assertGreater(block["setup"]["nodes_in_band"], 0)
+
+    def test_a_scenario_can_be_measured(self):
+        figures = json.loads(self.must_succeed("bench", "--scene", QUICK_LOOK, "--transfer", "flip", "--json",
+                                               "--set", "domain.cell_size=40 um").stdout)
+        [scene] = figures["scenes"]
+        self.assertEqual([form["transfer"] for form in scene["forms"]], ["flip"])
+        self.assertEqual(figures["particles"], 10000)
 
 
 if __name__ == "__main__":

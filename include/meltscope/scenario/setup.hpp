@@ -1,7 +1,11 @@
 #pragma once
 
+#include "meltscope/build/shapes.hpp"
 #include "meltscope/run/simulation.hpp"
 #include "meltscope/scenario/scenario.hpp"
+
+#include <span>
+#include <vector>
 
 namespace meltscope {
 
@@ -11,8 +15,14 @@ RunParameters run_parameters(const Scenario& scenario);
 /// The grid of a scenario's domain.
 Grid scenario_grid(const Scenario& scenario);
 
-/// Fills the scenario's bodies with particles on the lattice. Reads geometry files and packs powder. Throws
-/// GeometryError for bodies that cannot be built, std::invalid_argument if there is not one particle.
+/// The bodies' shapes, files read and powder packed onto what the earlier bodies are. Throws GeometryError
+/// for bodies that cannot be built.
+std::vector<Shape> make_shapes(const Scenario& scenario);
+
+/// Fills the scenario's bodies, that have these shapes, with particles on the lattice.
+ParticleList fill_scenario(const Scenario& scenario, std::span<const Shape> shapes);
+
+/// The same, shapes made first.
 ParticleList fill_scenario(const Scenario& scenario);
 
 /// Lattice points a cell along an axis: the cube root of particles_per_cell.

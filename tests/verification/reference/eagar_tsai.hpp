@@ -2,9 +2,13 @@
 
 #include "meltscope/vec3.hpp"
 
+#include <Eigen/Core>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <vector>
 
 namespace meltscope::verification {
 
@@ -33,6 +37,29 @@ struct EagarTsai {
         return integral(p, std::sqrt(elapsed), [&](double s) { return beam(elapsed - s); });
     }
 
+    /// rise() at all points of a grid of planes x, y and z (m), x fastest. The integrand is a product of one
+    /// factor an axis, so the integral is a product of matrices.
+    std::vector<double> rise_on(std::span<const double> x, std::span<const double> y,
+                                std::span<const double> z, double elapsed) const {
+        Eigen::MatrixXd along_x(x.size(), points_in_time), across_y(points_in_time, y.size()),
+            down_z(points_in_time, z.size());
+        const double dw = std::sqrt(elapsed) / points_in_time;
+        for (int n = 0; n < points_in_time; ++n) {
+            const double w = (n + 0.5) * dw, s = w * w, q = spread(s);
+            for (std::size_t i = 0; i < x.size(); ++i)
+                along_x(i, n) = factor() * dw * 4.0 / q * along(x[i], beam(elapsed - s), q);
+            for (std::size_t j = 0; j < y.size(); ++j)
+                across_y(n, j) = with_images(y[j], half_width, q);
+            for (std::size_t k = 0; k < z.size(); ++k)
+                down_z(n, k) = with_images(z[k], depth, 4.0 * diffusivity * s);
+        }
+        std::vector<double> rise(x.size() * y.size() * z.size());
+        for (std::size_t k = 0; k < z.size(); ++k)
+            Eigen::Map<Eigen::MatrixXd>(&rise[k * x.size() * y.size()], x.size(), y.size()).noalias() =
+                along_x * (down_z.col(k).asDiagonal() * across_y);
+        return rise;
+    }
+
     /// Rise in K far from all walls, long after the start; x is counted from the beam.
     double steady_rise(const Vec3& p) const {
         const double longest = 80.0 * sigma * sigma / diffusivity + 60.0 * diffusivity / (speed * speed);
@@ -43,26 +70,34 @@ struct EagarTsai {
     }
 
   private:
+    static constexpr int points_in_time = 2000;
+
+    double factor() const {
+        return absorbed_power /
+               (std::numbers::pi * heat_capacity * std::sqrt(4.0 * std::numbers::pi * diffusivity));
+    }
+
+    double spread(double s) const { return 2.0 * (sigma * sigma + 2.0 * diffusivity * s); }
+
+    double along(double p, double beam_x, double q) const {
+        double sum = std::exp(-(p - beam_x) * (p - beam_x) / q);
+        for (const double wall : {x_low, x_high})
+            if (std::isfinite(wall))
+                sum += std::exp(-(p - 2.0 * wall + beam_x) * (p - 2.0 * wall + beam_x) / q);
+        return sum;
+    }
+
     /// s = w^2 takes the root out of the integrand; the midpoint rule then converges fast.
     template <class BeamAt>
     double integral(const Vec3& p, double w_end, BeamAt beam_at) const {
-        const int count = 2000;
-        const double dw = w_end / count;
+        const double dw = w_end / points_in_time;
         double sum = 0.0;
-        for (int i = 0; i < count; ++i) {
-            const double w = (i + 0.5) * dw, s = w * w;
-            const double q = 2.0 * (sigma * sigma + 2.0 * diffusivity * s);
-            const double across = with_images(p[1], half_width, q);
-            const double down = with_images(p[2], depth, 4.0 * diffusivity * s);
-            const double x = beam_at(s);
-            double along = std::exp(-(p[0] - x) * (p[0] - x) / q);
-            for (const double wall : {x_low, x_high})
-                if (std::isfinite(wall))
-                    along += std::exp(-(p[0] - 2.0 * wall + x) * (p[0] - 2.0 * wall + x) / q);
-            sum += 4.0 / q * along * across * down;
+        for (int i = 0; i < points_in_time; ++i) {
+            const double w = (i + 0.5) * dw, s = w * w, q = spread(s);
+            sum += 4.0 / q * along(p[0], beam_at(s), q) * with_images(p[1], half_width, q) *
+                   with_images(p[2], depth, 4.0 * diffusivity * s);
         }
-        return absorbed_power * sum * dw /
-               (std::numbers::pi * heat_capacity * std::sqrt(4.0 * std::numbers::pi * diffusivity));
+        return factor() * sum * dw;
     }
 
     /// exp(-r^2/q) and its images in walls at +- wall of a source on r = 0.

@@ -57,6 +57,21 @@ TEST(Reference, eagar_tsai_between_walls_keeps_its_energy) {
     EXPECT_NEAR(heat, beam.absorbed_power * elapsed, 0.01);
 }
 
+TEST(Reference, eagar_tsai_on_a_grid_is_eagar_tsai_point_by_point) {
+    EagarTsai beam;
+    beam.speed = 2.0;
+    beam.x_low = -1.0;
+    beam.x_high = 5.0;
+    beam.half_width = 2.0;
+    beam.depth = 1.5;
+    const std::vector<double> x{-1.0, 0.5, 1.7}, y{-2.0, 0.3}, z{-1.5, -0.1, 0.0};
+    const std::vector<double> rise = beam.rise_on(x, y, z, 0.9);
+    for (std::size_t k = 0, at = 0; k < z.size(); ++k)
+        for (std::size_t j = 0; j < y.size(); ++j)
+            for (std::size_t i = 0; i < x.size(); ++i, ++at)
+                EXPECT_NEAR(rise[at], beam.rise(Vec3(x[i], y[j], z[k]), 0.9), 1e-14);
+}
+
 TEST(Reference, flux_profile_gives_the_figures_of_the_table) {
     EXPECT_NEAR(flux_profile(0.0, 1.0, 1.0, 1.0, 1.0),
                 reference_value("constant_flux", "dT k/(q sqrt(alpha t)) at x=0"), printed);

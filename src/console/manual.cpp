@@ -93,6 +93,8 @@ equals that of the run bit for bit, with any number of threads.
   them: a replay needs the scenario that the run began with, which is the `run.toml` of its folder, and is refused under another one.
   Under another scenario file, or with changes that name files, only the rest can be replayed, from that checkpoint.
 - `restore` puts the journal back to that of the checkpoint.
+- A journal names no file to write: `at T save FILE` is noted as `at T save`, which saves into the run folder when a replay or a restart
+  comes to it. A journal from elsewhere that names one is refused.
 - A checkpoint holds the journal so far, so that a run taken up from it goes on with it, with what waits, and with its pictures' settings.
 )";
 }

@@ -100,7 +100,6 @@ TEST(Steering, values_that_no_command_leads_to_are_refused_by_their_key) {
     expect("time.end", [](Steering& s) { s.time.end = 0.0; });
     expect("schedule.every_steps", [](Steering& s) { s.schedule.output.every_steps = 0; });
     expect("schedule.every", [](Steering& s) { s.schedule.picture->every = -1e-5; });
-    expect("physics.quiescent_tolerance", [](Steering& s) { s.physics.quiescent_tolerance = -1e-6; });
     expect("level_set.radius", [](Steering& s) { s.level_set.radius = 1e9; });
 }
 

@@ -170,7 +170,7 @@ class BadInput(ProgramTest):
         self.write(extra=self.LAYER.format(20, 60) + 'd10 = "20 um"\nd50 = "25 um"\nd90 = "30 um"\npacking = 0.7\n')
         self.assertIn("packed", self.must_refuse("check", "bad.toml"))
         self.write(extra=self.LAYER.format(20, 60) + 'state = "powder"\n')
-        self.assertIn("# layer      at t = 20 us: 9600 particles", self.check())
+        self.assertIn("# layer      at t = 20.0 us: 9600 particles", self.check())
 
     def check(self):
         return self.must_succeed("check", self.folder / "bad.toml").stdout

@@ -5,6 +5,7 @@
 
 #include "../io/temporary_folder.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -57,6 +58,49 @@ TEST(ConsoleTable, every_command_has_help_an_example_that_names_it_and_a_handler
     }
 }
 
+TEST(ConsoleTable, what_users_were_promised_is_there_and_nothing_twice) {
+    std::vector<std::string> commands, parameters;
+    for (const Command& command : command_table())
+        commands.push_back(command.name);
+    for (const Parameter& parameter : parameters_of({Laser{}}))
+        parameters.push_back(parameter.name);
+    for (const char* name :
+         {"status", "run",   "pause",   "continue", "step", "until",  "get",     "set",      "list",  "path",
+          "power",  "speed", "spot",    "on",       "off",  "view",   "field",   "snapshot", "probe", "pool",
+          "energy", "save",  "restore", "layer",    "at",   "record", "history", "source",   "help",  "quit"})
+        EXPECT_EQ(std::count(commands.begin(), commands.end(), name), 1) << name;
+    for (const char* name : {"laser.power",
+                             "laser.speed",
+                             "laser.spot_radius",
+                             "laser.absorptivity",
+                             "laser.on",
+                             "output.every",
+                             "render.every",
+                             "render.views",
+                             "render.color_range",
+                             "physics.diffusion",
+                             "physics.transfer",
+                             "physics.deposit",
+                             "physics.blend_time",
+                             "physics.radiation",
+                             "physics.evaporation",
+                             "physics.reabsorption",
+                             "physics.convection",
+                             "physics.ambient",
+                             "time.cfl",
+                             "boundary.x_min",
+                             "boundary.x_max",
+                             "boundary.y_min",
+                             "boundary.y_max",
+                             "boundary.z_min",
+                             "boundary.z_max"})
+        EXPECT_EQ(std::count(parameters.begin(), parameters.end(), name), 1) << name;
+    for (std::vector<std::string>* names : {&commands, &parameters}) {
+        std::sort(names->begin(), names->end());
+        EXPECT_EQ(std::adjacent_find(names->begin(), names->end()), names->end());
+    }
+}
+
 TEST(ConsoleTable, the_manual_in_the_repository_is_current) {
     EXPECT_EQ(testing::contents_of(std::filesystem::path(MELTSCOPE_SOURCE_DIR) / "docs/console.md"),
               console_manual());
@@ -72,7 +116,10 @@ TEST(ConsoleWords, quotes_keep_blanks_and_comments_are_dropped) {
     EXPECT_EQ(split_words("save \"my file.h5\" # now"), (std::vector<std::string>{"save", "my file.h5"}));
     EXPECT_EQ(split_words("probe 1,2,\t3"), (std::vector<std::string>{"probe", "1", "2", "3"}));
     EXPECT_THROW(split_words("save \"x"), CommandError);
-    for (const char* word : {"plain", "with blank", "a,b", "#"})
+    EXPECT_EQ(split_words("adopt 'render.views=[\"top\"]'"),
+              (std::vector<std::string>{"adopt", "render.views=[\"top\"]"}));
+    for (const char* word :
+         {"plain", "with blank", "a,b", "#", "", "it's", "say \"so\"", "\"it's\"", "[\"a\", 'b']"})
         EXPECT_EQ(split_words(as_word(word)), std::vector<std::string>{word});
 }
 
@@ -162,6 +209,11 @@ TEST_F(ConsoleCommands, values_out_of_range_and_wrong_units_change_nothing) {
                              "get nothing",
                              "snapshot x.png",
                              "save",
+                             "adopt",
+                             "adopt time.end=1",
+                             "adopt laser.path_file=x.txt",
+                             "detach",
+                             "help nothing.here",
                              "\"",
                              "history 3"})
         fails(line);
@@ -305,6 +357,22 @@ TEST_F(ConsoleCommands, restore_puts_state_steering_journal_and_waiting_commands
     EXPECT_EQ(console.waiting[0].command, "power 30");
 }
 
+TEST_F(ConsoleCommands, a_layer_is_in_the_journal_with_all_that_a_replay_needs) {
+    ok("layer thickness 55 um d10 30 um d50 40 um d90 50 um packing 0.3 seed 3 basis volume");
+    const CheckpointData laid = testing::kept(run);
+    meltscope::Run again = start_tiny();
+    ConsoleState other{tiny_host()};
+    const Reply reply = execute(other, again, parse_journal(run.journal, "j").at(0).command);
+    EXPECT_TRUE(reply.ok) << reply.text;
+    testing::expect_equal(testing::kept(again), laid);
+}
+
+TEST_F(ConsoleCommands, help_tells_what_a_parameter_is) {
+    const std::string text = ok("help laser.power");
+    EXPECT_TRUE(has(text, "laser.power = 10 W"));
+    EXPECT_TRUE(has(text, "W, 0 or more"));
+}
+
 TEST_F(ConsoleCommands, a_layer_adds_powder_and_its_energy) {
     const std::int64_t before = run.simulation.particles.count();
     ok("layer thickness 55 um d10 30 um d50 40 um d90 50 um packing 0.3 seed 3 temperature 400");
@@ -331,8 +399,8 @@ TEST_F(ConsoleCommands, recorded_commands_can_be_sourced) {
 }
 
 TEST(ConsoleCompletion, commands_parameters_values_views_and_files_are_completed) {
-    const CompletionNames names{{"laser.power", "laser.speed", "laser.on", "time.end"},
-                                {"temperature", "phi"}};
+    const CompletionNames names{
+        {"laser.power", "laser.speed", "laser.on", "time.end"}, {"temperature", "phi"}, {"red"}, {"metal"}};
     using Words = std::vector<std::string>;
     EXPECT_EQ(completions("sta", names), Words{"status"});
     EXPECT_EQ(completions("set laser.p", names), Words{"laser.power"});
@@ -341,6 +409,15 @@ TEST(ConsoleCompletion, commands_parameters_values_views_and_files_are_completed
     EXPECT_EQ(completions("view ov", names), Words{"overview"});
     EXPECT_EQ(completions("path d", names), Words{"dwell"});
     EXPECT_EQ(completions("help qu", names), Words{"quit"});
+    EXPECT_EQ(completions("help time.", names), Words{"time.end"});
+    EXPECT_EQ(completions("layer thickness 40 um ma", names), Words{"material"});
+    EXPECT_EQ(completions("layer material ", names), Words{"metal"});
+    EXPECT_EQ(completions("power ", names), Words{}); // one laser need not be named
+    CompletionNames two = names;
+    two.lasers = {"red", "blue"};
+    EXPECT_EQ(completions("power ", two), (Words{"red", "blue"}));
+    EXPECT_EQ(completions("path b", two), Words{"blue"});
+    EXPECT_EQ(completions("path blue ap", two), Words{"append"});
     EXPECT_EQ(completions("at 1 ms pow", names), Words{"power"});
     EXPECT_EQ(completions("at 1 ms set time.", names), Words{"time.end"});
     EXPECT_EQ(completions("nonsense ", names), Words{});

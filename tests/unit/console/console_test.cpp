@@ -5,6 +5,7 @@
 #include "../io/temporary_folder.hpp"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <map>
 #include <random>
@@ -42,7 +43,8 @@ RunOutcome drive(meltscope::Run& run, Console& console, const Plan& plan,
     return outcome;
 }
 
-CheckpointData end_of_replay(const std::string& journal) {
+CheckpointData end_of_replay(const std::string& journal, int threads = 1) {
+    omp_set_num_threads(threads);
     meltscope::Run run = start_tiny();
     Console console(tiny_host(), false);
     console.replay(journal, "journal.txt");
@@ -50,6 +52,7 @@ CheckpointData end_of_replay(const std::string& journal) {
     connections.commands.push_back(console.source());
     run_to_end(run, connections);
     EXPECT_EQ(console.left_of_replay(), "");
+    omp_set_num_threads(1);
     return kept(run);
 }
 
@@ -59,7 +62,7 @@ std::string random_line(std::mt19937& random) {
         return std::uniform_real_distribution(low, high)(random);
     };
     const auto um = [&](double low, double high) { return fmt::format("{} um", pick(low, high)); };
-    switch (random() % 22) {
+    switch (random() % 24) {
     case 0:
         return fmt::format("power {} W", pick(0, 30));
     case 1:
@@ -102,6 +105,11 @@ std::string random_line(std::mt19937& random) {
         return fmt::format("set time.max_step {} us", pick(0.5, 5));
     case 20:
         return "pool";
+    case 21:
+        return fmt::format("layer thickness {} packing {} homogenised", um(15, 25), pick(0.3, 0.7));
+    case 22:
+        return fmt::format("layer thickness {} d10 14 um d50 18 um d90 22 um seed {} packing 0.3", um(24, 40),
+                           random() % 100);
     default:
         return "nonsense 3";
     }
@@ -114,9 +122,9 @@ Plan random_plan(std::mt19937& random, std::int64_t steps, int lines) {
     return plan;
 }
 
-TEST(ConsoleReplay, random_sessions_replay_bit_for_bit_also_when_interrupted_and_taken_up) {
+TEST(ConsoleReplay, random_sessions_replay_bit_for_bit_with_other_threads_and_when_interrupted_and_taken_up) {
     std::mt19937 random(20240607);
-    for (int session = 0; session < 100; ++session) {
+    for (int session = 0; session < 300; ++session) {
         SCOPED_TRACE(fmt::format("session {}", session));
         const Plan plan = random_plan(random, 45, 12);
         const std::int64_t interrupted_at = 1 + std::int64_t(random() % 44);
@@ -128,7 +136,7 @@ TEST(ConsoleReplay, random_sessions_replay_bit_for_bit_also_when_interrupted_and
         }
         const CheckpointData end = kept(whole);
         EXPECT_FALSE(end.journal.empty());
-        expect_equal(end_of_replay(end.journal), end);
+        expect_equal(end_of_replay(end.journal, 1 + session % 3), end);
 
         // A plan is followed on up to the interruption, and from there: what was said at that step is not
         // said again.

@@ -1,7 +1,5 @@
 #include "finite_differences.hpp"
 
-#include "plate.hpp"
-
 namespace meltscope::benchmarks {
 namespace {
 
@@ -21,12 +19,11 @@ void beam_shares(double first, double dx, double centre, Field& share) {
 
 } // namespace
 
-FiniteDifferences::FiniteDifferences(double dx)
-    : dx_(dx), nx_(ExactRise::cells(Plate::length, dx) + 1), ny_(ExactRise::cells(Plate::width, dx) + 1),
-      nz_(ExactRise::cells(Plate::depth, dx) + 1),
-      steps_(std::int64_t(std::ceil(Plate::end_time * 6.0 * Plate::diffusivity / (dx * dx)))),
+FiniteDifferences::FiniteDifferences(const PlateCells& cells)
+    : dx_(cells.dx), nx_(cells.x + 1), ny_(cells.y + 1), nz_(cells.z + 1),
+      steps_(std::int64_t(std::ceil(Plate::end_time * 6.0 * Plate::diffusivity / (dx_ * dx_)))),
       rise_(nodes(), 0.0), next_(nodes(), 0.0), across_(ny_, 0.0), along_(nx_, 0.0) {
-    beam_shares(-0.5 * Plate::width, dx, 0.0, across_);
+    beam_shares(-0.5 * Plate::width, dx_, 0.0, across_);
 }
 
 void FiniteDifferences::run() {

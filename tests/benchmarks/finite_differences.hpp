@@ -1,5 +1,7 @@
 #pragma once
 
+#include "plate.hpp"
+
 #include "meltscope/aligned.hpp"
 
 #include <cstdint>
@@ -11,7 +13,7 @@ namespace meltscope::benchmarks {
 /// faces by mirror images. All threads; double precision.
 class FiniteDifferences {
   public:
-    explicit FiniteDifferences(double dx);
+    explicit FiniteDifferences(const PlateCells& cells);
 
     /// Steps through the whole track in equal steps, each at most dx^2/(6 alpha), the limit of stability.
     void run();

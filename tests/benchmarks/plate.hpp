@@ -20,7 +20,20 @@ struct Plate {
     static constexpr double end_time = track / speed;
 };
 
-inline verification::EagarTsai exact_solution() {
+/// Whole cells of size dx, m, along each axis; a plate that is not a whole number of them deep is a little
+/// deeper.
+struct PlateCells {
+    explicit PlateCells(double dx_)
+        : dx(dx_), x(std::llround(Plate::length / dx)), y(std::llround(Plate::width / dx)),
+          z(std::int64_t(std::ceil(Plate::depth / dx - 1e-6))) {}
+
+    double dx;
+    std::int64_t x, y, z;
+
+    double depth() const { return double(z) * dx; } ///< m
+};
+
+inline verification::EagarTsai exact_solution(const PlateCells& cells) {
     verification::EagarTsai exact;
     exact.absorbed_power = Plate::absorbed_power;
     exact.sigma = 0.25 * Plate::d4sigma;
@@ -31,18 +44,18 @@ inline verification::EagarTsai exact_solution() {
     exact.x_low = 0.0;
     exact.x_high = Plate::length;
     exact.half_width = 0.5 * Plate::width; // y is counted from the track
-    exact.depth = Plate::depth;
+    exact.depth = cells.depth();
     return exact;
 }
 
-/// The exact rise in K at the end of the track at all nodes of the plate, spacing dx, x fastest; y from the
-/// side at -width/2, z from the bottom.
+/// The exact rise in K at the end of the track at all nodes of the plate, x fastest; y from the side at
+/// -width/2, z from the bottom.
 class ExactRise {
   public:
-    explicit ExactRise(double dx)
-        : nx(cells(Plate::length, dx) + 1), ny(cells(Plate::width, dx) + 1), nz(cells(Plate::depth, dx) + 1),
-          rise_(exact_solution().rise_on(planes(nx, dx, 0.0), planes(ny, dx, -0.5 * Plate::width),
-                                         planes(nz, dx, -Plate::depth), Plate::end_time)),
+    explicit ExactRise(const PlateCells& c)
+        : nx(c.x + 1), ny(c.y + 1), nz(c.z + 1),
+          rise_(exact_solution(c).rise_on(planes(nx, c.dx, 0.0), planes(ny, c.dx, -0.5 * Plate::width),
+                                          planes(nz, c.dx, -c.depth()), Plate::end_time)),
           peak_(*std::max_element(rise_.begin(), rise_.end())) {}
 
     const std::int64_t nx, ny, nz; ///< nodes along each axis
@@ -59,8 +72,6 @@ class ExactRise {
                     most = std::max(most, std::abs(rise(i, j, k) - rise_[i + nx * (j + ny * k)]));
         return 100.0 * most / peak_;
     }
-
-    static std::int64_t cells(double size, double dx) { return std::llround(size / dx); }
 
   private:
     static std::vector<double> planes(std::int64_t count, double dx, double first) {

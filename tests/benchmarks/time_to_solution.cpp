@@ -63,7 +63,7 @@ cfl = {cfl}
 )",
         fmt::arg("density", Plate::density), fmt::arg("conductivity", Plate::conductivity),
         fmt::arg("heat_capacity", Plate::heat_capacity), fmt::arg("side", -0.5 * Plate::width),
-        fmt::arg("other_side", 0.5 * Plate::width), fmt::arg("bottom", -Plate::depth),
+        fmt::arg("other_side", 0.5 * Plate::width), fmt::arg("bottom", -PlateCells(setting.dx).depth()),
         fmt::arg("length", Plate::length), fmt::arg("head", 3.0 * setting.dx), fmt::arg("dx", setting.dx),
         fmt::arg("particles_per_cell", setting.particles_per_cell), fmt::arg("power", Plate::absorbed_power),
         fmt::arg("spot_radius", 0.5 * Plate::d4sigma), fmt::arg("start", Plate::start),
@@ -101,8 +101,8 @@ Outcome run_particles(const Setting& setting, const ExactRise& exact, std::int64
     return outcome;
 }
 
-Outcome run_differences(double dx, const ExactRise& exact) {
-    FiniteDifferences differences(dx);
+Outcome run_differences(const PlateCells& cells, const ExactRise& exact) {
+    FiniteDifferences differences(cells);
     const Stopwatch watch;
     differences.run();
     const double seconds = watch.seconds();
@@ -114,15 +114,16 @@ Outcome run_differences(double dx, const ExactRise& exact) {
 
 /// The runs of one cell size that have at most `limit` particle-steps.
 void compare(double dx, std::int64_t limit) {
-    const ExactRise exact(dx);
+    const PlateCells cells(dx);
+    const ExactRise exact(cells);
     const auto print = [&](const char* method, const Setting& s, std::int64_t unknowns, const Outcome& o) {
         fmt::print("{},{:.4g},{},{},{},{},{},{:.4g},{:.4g}\n", method, 1e6 * s.dx, s.particles_per_cell,
                    s.transfer, s.cfl, unknowns, o.steps, o.seconds, o.error_percent);
         std::fflush(stdout);
     };
     print("differences", {dx, 0, "none", 1.0 / 6.0}, exact.nx * exact.ny * exact.nz,
-          median_outcome([&] { return run_differences(dx, exact); }));
-    const double plate = Plate::length * Plate::width * Plate::depth / (dx * dx * dx); // cells
+          median_outcome([&] { return run_differences(cells, exact); }));
+    const double plate = double(cells.x) * double(cells.y) * double(cells.z); // cells
     const double cell_times = Plate::end_time * Plate::diffusivity / (dx * dx);
     for (const int per_cell : {1, 8})
         for (const char* transfer : {"affine", "flip"})

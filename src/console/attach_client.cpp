@@ -1,5 +1,6 @@
 #include "attach_socket.hpp"
 
+#include "meltscope/console/commands.hpp"
 #include "meltscope/console/line_editor.hpp"
 
 #include <array>
@@ -33,6 +34,17 @@ bool send_all(int connection, const std::string& text) {
         sent += std::size_t(count);
     }
     return true;
+}
+
+/// Is it the command that ends this end of the connection, whole or begun? What is no command at all the run
+/// will say.
+bool is_detach(const std::string& text) {
+    try {
+        const std::vector<std::string> words = split_words(text);
+        return words.size() == 1 && find_command(words[0]).name == "detach";
+    } catch (const CommandError&) {
+        return false;
+    }
 }
 
 /// Lines as they come; false at the end.
@@ -105,7 +117,7 @@ bool attach(const std::filesystem::path& folder, bool watch) {
     };
     LineEditor::Callbacks callbacks;
     callbacks.line = [&](const std::string& text) {
-        if (!script && text == "detach") {
+        if (!script && is_detach(text)) {
             leave();
             return;
         }

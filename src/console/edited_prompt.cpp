@@ -171,6 +171,13 @@ class EditedPrompt : public Prompt {
         std::fputs("\033[J", stdout);
     }
 
+    /// The line again. EL_REFRESH alone begins wherever the cursor stands.
+    void redraw() {
+        clear_line();
+        std::fflush(stdout);
+        el_set(editor_, EL_REFRESH);
+    }
+
     /// Shows what was printed meanwhile above the line, and the line again.
     void show_output() {
         const std::lock_guard lock(mutex_);
@@ -190,8 +197,8 @@ class EditedPrompt : public Prompt {
     }
 
     void follow_size() {
-        columns_ = terminal_columns();
-        clear_line(); // terminals wrap what they show anew
+        columns_ = terminal_columns(); // terminals wrap what they show anew
+        clear_line();
         std::fflush(stdout);
         el_resize(editor_);
         el_set(editor_, EL_REFRESH);
@@ -204,7 +211,7 @@ class EditedPrompt : public Prompt {
         if (status == shown_status_)
             return;
         shown_status_ = status;
-        el_set(editor_, EL_REFRESH);
+        redraw();
     }
 
     int next_character(wchar_t* character) {
@@ -242,7 +249,7 @@ class EditedPrompt : public Prompt {
     /// What stays on the screen of a line is what was typed.
     static unsigned char enter(EditLine* editor, int) {
         of(editor).shown_status_.clear();
-        el_set(editor, EL_REFRESH);
+        of(editor).redraw();
         el_push(editor, "\r"); // bound to the end of a line, as Enter comes as \n
         return CC_NORM;
     }

@@ -5,6 +5,7 @@ import pty
 import select
 import subprocess
 import termios
+import time
 import unittest
 
 from program import checkpoints

@@ -75,7 +75,7 @@ Simulation set_up(const Scenario& scenario, SetupFigures& figures) {
                             lattice_of(scenario));
     });
     s.parameters.time.end = std::max(s.parameters.time.end, 1.0); // later than all steps of the measurement
-    advance(s, s.parameters.time.end); // touches what is left
+    advance(s, s.parameters.time.end);                            // touches what is left
     figures.peak_bytes = peak_memory() - before;
     count_bytes(s, figures);
     figures.nodes_in_band = count_nodes_in_band(s);

@@ -113,8 +113,9 @@ void add_insitu(std::string& text, const InSituCost& cost) {
     add_line(text, "with pictures and files", fmt::format("{:.3f}", cost.with_seconds));
     add_line(text, "ratio", fmt::format("{:.3f}", cost.ratio()));
     add_line(text, "one snapshot", fmt::format("{:.3f}", cost.snapshot_seconds));
-    add_line(text, "one overview picture", fmt::format("{:.3f} beside the solver, {:.3f} while it rests",
-                                                       cost.render_seconds, cost.overview_seconds));
+    add_line(text, "one overview picture",
+             fmt::format("{:.3f} beside the solver, {:.3f} while it rests", cost.render_seconds,
+                         cost.overview_seconds));
     add_line(text, "one dashboard", fmt::format("{:.3f} while the solver rests", cost.dashboard_seconds));
     add_line(text, "one output's data files", fmt::format("{:.3f} beside the solver", cost.file_seconds));
 }

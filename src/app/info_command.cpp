@@ -34,7 +34,7 @@ void describe_checkpoint(const fs::path& file) {
     const CheckpointData data = read_checkpoint(file);
     say(fmt::format("checkpoint {} (schema {})", file.string(), data.schema_version));
     say(fmt::format("  step {}, t = {} ({:.9g} s), dt {}", data.step, in_si(data.time, "s"), data.time,
-                      in_si(data.dt, "s")));
+                    in_si(data.dt, "s")));
     say(fmt::format("  {} particles", data.particles.id.size()));
     std::map<std::int32_t, std::size_t> by_material;
     for (const std::int32_t material : data.particles.material)
@@ -45,7 +45,7 @@ void describe_checkpoint(const fs::path& file) {
         say(fmt::format("  grid array {}: {} (z y x)", array.name, fmt::join(array.dims, " x ")));
     const auto lines = std::count(data.journal.begin(), data.journal.end(), '\n');
     say(fmt::format("  scenario {} bytes, journal {} line{}", data.scenario.size(), lines,
-                      lines == 1 ? "" : "s"));
+                    lines == 1 ? "" : "s"));
     print_figures("ledger", data.ledger, " J");
 }
 
@@ -61,9 +61,9 @@ void describe_run(const fs::path& folder) {
     say(fmt::format("run {}{}", folder.string(), summary.title.empty() ? "" : ": " + summary.title));
     say(fmt::format("  {}{}", summary.outcome, summary.message.empty() ? "" : ": " + summary.message));
     say(fmt::format("  meltscope {} ({}), {} thread{}", summary.version, summary.git_hash, summary.threads,
-                      summary.threads == 1 ? "" : "s"));
+                    summary.threads == 1 ? "" : "s"));
     say(fmt::format("  {} particles, {} steps, t = {}", summary.particles, summary.steps,
-                      in_si(summary.time, "s")));
+                    in_si(summary.time, "s")));
     say(fmt::format("  {:.1f} M particle-steps/s", 1e-6 * summary.particle_steps_per_second));
     print_figures("wall seconds", summary.wall_seconds, " s");
     print_figures("ledger", summary.ledger, "");

@@ -186,9 +186,10 @@ void tell_changes(const std::vector<std::string>& changes, Terminal& terminal) {
 /// Keeps the state in which the solution has become impossible; says where.
 std::string state_kept(const Run& run, const RunOutputs& outputs) {
     try {
-        return fmt::format("The state after that step is in {} for a look at it (meltscope info); go on from a "
-                           "checkpoint before it",
-                           outputs.keep_for_inspection(run).string());
+        return fmt::format(
+            "The state after that step is in {} for a look at it (meltscope info); go on from a "
+            "checkpoint before it",
+            outputs.keep_for_inspection(run).string());
     } catch (const std::exception& error) {
         return fmt::format("The state after that step could not be kept: {}", error.what());
     }

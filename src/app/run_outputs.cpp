@@ -177,7 +177,8 @@ std::vector<Sink> RunOutputs::sinks() {
 }
 
 void RunOutputs::write_checkpoint_of(const Run& run) {
-    // A restart makes nothing again that lies before it: a kill must not find a checkpoint ahead of the files.
+    // A restart makes nothing again that lies before it: a kill must not find a checkpoint ahead of the
+    // files.
     pipeline_->wait_for_earlier_than(run.simulation.time);
     const auto path = paths_.checkpoint(run.simulation.step);
     std::filesystem::create_directory(path.parent_path()); // fails if the run folder has been removed

@@ -8,6 +8,8 @@ StepOptions step_options(const Simulation& s) {
     options.affine = s.parameters.physics.affine_transfer;
     options.energy_gradient = s.parameters.physics.diffuse_energy;
     options.blend = options.affine ? 0.4 : 0.0; // about what advance() takes
+    for (const EquationOfState& eos : s.eos)
+        options.least_energy.push_back(eos.energy(s.least_temperature));
     return options;
 }
 

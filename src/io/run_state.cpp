@@ -25,6 +25,7 @@ constexpr std::array<std::pair<const char*, double Ledger::*>, 12> ledger_names{
      {"stored", &Ledger::stored}}};
 
 constexpr const char* mass_energy_name = "mass_energy";
+constexpr const char* least_temperature_name = "least_temperature"; // K, one number
 constexpr const char* powder_name = "powder"; // 1: homogenised powder that has not melted yet
 
 /// Calls work(storage index of a row's first node) for all rows of nodes, ghosts included, in the order of
@@ -185,6 +186,7 @@ CheckpointData checkpoint_of(const Run& run, const std::string& scenario) {
         particles.extra.emplace_back(powder_name,
                                      std::vector<double>(list.powder.begin(), list.powder.end()));
     data.grid.push_back(without_padding(simulation.grid, mass_energy_name, simulation.nodes.mass_energy));
+    data.grid.push_back({least_temperature_name, {1}, {simulation.least_temperature}});
     if (run.layers_laid > 0)
         data.grid.push_back({layers_laid_name, {1}, {double(run.layers_laid)}});
     if (run.solidification)
@@ -196,6 +198,21 @@ CheckpointData checkpoint_of(const Run& run, const std::string& scenario) {
     return data;
 }
 
+namespace {
+
+/// Checkpoints from before it was kept go on without.
+double least_temperature_of(const CheckpointData& data) {
+    const CheckpointGridArray* array = find_array(data, least_temperature_name);
+    if (!array)
+        return 0.0;
+    if (array->values.size() != 1 || !(array->values.front() >= 0.0 && std::isfinite(array->values.front())))
+        throw CheckpointError(
+            fmt::format("the checkpoint's /grid/{} is not one temperature", least_temperature_name));
+    return array->values.front();
+}
+
+} // namespace
+
 Simulation simulation_from(const CheckpointData& data, RunParameters parameters, const Grid& grid,
                            int lattice) {
     if (!(data.time >= 0.0 && std::isfinite(data.time)) || data.step < 0 || data.step > 1'000'000'000'000'000)
@@ -204,7 +221,8 @@ Simulation simulation_from(const CheckpointData& data, RunParameters parameters,
     const Field mass_energy = with_padding(grid, data, mass_energy_name, 0.0);
     ParticleList particles = particles_from(data.particles, parameters.materials.size());
     return resume_simulation(std::move(parameters), grid, std::move(particles), lattice, data.time, data.step,
-                             data.dt, ledger_from_entries(data.ledger), mass_energy);
+                             data.dt, ledger_from_entries(data.ledger), mass_energy,
+                             least_temperature_of(data));
 }
 
 std::int64_t layers_laid_by(const CheckpointData& data) {

@@ -2,6 +2,8 @@
 
 #include "meltscope/mpm/group_stencils.hpp"
 
+#include "slope_limit.hpp"
+
 namespace meltscope {
 namespace {
 
@@ -38,9 +40,12 @@ double sum_near_fixed_faces(const Nodes& nodes, const Field& field) {
 }
 
 /// q_i = (1 - 2 alpha_i dt / dx^2) D_i / m_i of nodes with one material outside its mushy range; zero
-/// elsewhere, where the energy may jump and a sharper increment would overshoot.
+/// elsewhere, where the energy may jump and a sharper increment would overshoot. Nor is it larger than what
+/// the node has above the least energy: what a node gains by a sharper increment its neighbours lose, and
+/// where a laser has only begun to heat they have nothing to give yet.
 void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
-                   const Field& inertia, double dt, const Nodes& nodes, Field& q) {
+                   const StepOptions& options, const Field& inertia, double dt, const Nodes& nodes,
+                   Field& q) {
     const double scale = 2.0 * dt / (grid.dx * grid.dx);
 #pragma omp parallel for schedule(static)
     for (std::int64_t i = 0; i < grid.size; i += lane_count) {
@@ -55,7 +60,12 @@ void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materia
                 const auto solid_or_liquid = (t < eos.solidus) || (t >= eos.liquidus);
                 const auto present =
                     nodes.several_materials() ? load(&nodes.material_mass[a][i]) > 0.0 : mass > 0.0;
-                where(present && solid_or_liquid, result) = (1.0 - scale * alpha) * rise;
+                Lanes sharper = (1.0 - scale * alpha) * rise;
+                if (!options.least_energy.empty()) {
+                    const Lanes room = max(load(&nodes.energy[a][i]) - options.least_energy[a], Lanes(0.0));
+                    sharper = min(max(sharper, -room), room);
+                }
+                where(present && solid_or_liquid, result) = sharper;
             }
         }
         store(result, &q[i]);
@@ -78,9 +88,9 @@ void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materia
 /// fixed temperature.
 double undo_lumping(const Grid& grid, const Particles& particles,
                     const std::vector<EquationOfState>& materials, const Boundary& boundary,
-                    const Field& inertia, double dt, Nodes& nodes) {
+                    const StepOptions& options, const Field& inertia, double dt, Nodes& nodes) {
     Field& q = nodes.new_energy[0]; // free until e* is known
-    lumping_error(grid, materials, boundary, inertia, dt, nodes, q);
+    lumping_error(grid, materials, boundary, options, inertia, dt, nodes, q);
     double change = -sum_near_fixed_faces(nodes, nodes.increment);
 
     const LatticeStencils lattices;
@@ -184,7 +194,7 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
     fold_ghosts(grid, boundary, AtFixedFaces::odd, nodes.increment);
     const Field& inertia = nodes.inertia.empty() ? nodes.mass : nodes.inertia;
     if (options.affine)
-        conducted -= undo_lumping(grid, particles, materials, boundary, inertia, dt, nodes);
+        conducted -= undo_lumping(grid, particles, materials, boundary, options, inertia, dt, nodes);
 
         // e_i* = e_i + D_i / m_i
 #pragma omp parallel for schedule(static)
@@ -234,11 +244,15 @@ void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Par
                                Nodes& nodes) {
     const LatticeStencils lattices;
     const double keep = 1.0 - options.blend;
+    const bool limited = options.affine && !options.least_energy.empty();
     for_each_block(particles.layout, [&](const LaneBlock& block) {
         for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
             const LaneGroup& group = particles.layout.groups[g];
             const double* change = nodes.energy[group.kind].data() + group.corner;
             const double* new_energy = nodes.new_energy[group.kind].data() + group.corner;
+            const Lanes least =
+                limited ? least_energy_of_group(grid, nodes.boundary, group, options.least_energy[group.kind])
+                        : Lanes(0.0);
             NodeSums sums;
             for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
                 using Stencil = std::decay_t<decltype(stencil)>;
@@ -254,6 +268,8 @@ void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Par
                     return stencil.scatter_value(energy, sums);
                 typename Stencil::Points gradient;
                 stencil.gather(new_energy, grid.stride_y, grid.stride_z, gradient);
+                if (limited)
+                    shorten_slopes(least, &particles.specific_energy[first], gradient);
                 for (int p = 0; p < Stencil::points; ++p) {
                     const Lanes mass = load(&particles.mass[first + p * lane_count]);
                     gradient.value[p] = energy[p];

@@ -27,6 +27,10 @@ double explicit_limit(const Simulation& s, double alpha) {
     return s.particles.lattice > 0 ? cell : cell / 3.0;
 }
 
+/// A hundredth of a kelvin below the least temperature nothing is held back, so that round-off in a plate at
+/// rest is let be.
+constexpr double least_temperature_slack = 0.01;
+
 /// Of the particles, not of the nodes: conductivities are taken at the particles, and a node that hangs on
 /// the edge of a ball by a thousandth of a cell's mass may be hundreds of kelvins hotter than anything that
 /// conducts. Heat capacities are taken at the nodes, but a hot one's is no smaller, and of a cold one's the
@@ -67,6 +71,9 @@ StepOptions step_options(const Simulation& s, double dt) {
     else if (physics.affine_transfer)
         options.blend =
             std::min(1.0, dt * std::min(max_diffusivity(s), s.powder_diffusivity) / (s.grid.dx * s.grid.dx));
+    for (const EquationOfState& eos : s.eos)
+        options.least_energy.push_back(
+            eos.energy(std::max(0.0, s.least_temperature - least_temperature_slack)));
     return options;
 }
 
@@ -99,6 +106,26 @@ void deposit_laser_heat(Simulation& s, double dt) {
     for (double& e : energy)
         e *= dt;
     deposit(s.grid, elements, energy, s.nodes);
+}
+
+/// Lowers the least temperature to what the faces and the surroundings can bring about.
+void look_at_surroundings(Simulation& s) {
+    for (const FaceCondition& face : s.parameters.boundary) {
+        using Kind = FaceCondition::Kind;
+        if (face.kind == Kind::fixed_temperature || face.kind == Kind::convection)
+            s.least_temperature = std::min(s.least_temperature, face.temperature);
+        else if (face.kind == Kind::fixed_flux && face.flux < 0.0)
+            s.least_temperature = 0.0;
+    }
+    if (!s.loss_laws.empty())
+        s.least_temperature = std::min(s.least_temperature, s.parameters.physics.ambient);
+}
+
+/// Lowers the least temperature to that of the coldest of these particles.
+void look_at_coldest(Simulation& s, const ParticleList& particles) {
+    for (std::int64_t q = 0; q < particles.size(); ++q)
+        s.least_temperature = std::min(
+            s.least_temperature, s.eos[particles.material[q]].temperature(particles.specific_energy[q]));
 }
 
 LossOptions loss_options(const PhysicsOptions& physics) {
@@ -196,6 +223,7 @@ void make_derived(Simulation& s) {
     for (const Laser& laser : s.parameters.lasers)
         s.light_maps.push_back(make_light_map(s.grid, s.surface, laser.direction));
     make_losses(s);
+    look_at_surroundings(s);
     s.seconds_in_level_set += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
@@ -214,6 +242,8 @@ Simulation set_up(RunParameters parameters, const Grid& grid, ParticleList parti
     s.grid = grid;
     for (const Material& material : s.parameters.materials)
         s.eos.push_back(make_equation_of_state(material));
+    s.least_temperature = std::numeric_limits<double>::infinity();
+    look_at_coldest(s, particles);
     s.particles = make_particles(grid, std::move(particles), lattice);
     make_derived(s);
     return s;
@@ -237,11 +267,13 @@ Simulation make_simulation(RunParameters parameters, const Grid& grid, ParticleL
 
 Simulation resume_simulation(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice,
                              double time, std::int64_t step, double dt, const Ledger& ledger,
-                             const Field& mass_energy) {
+                             const Field& mass_energy, double least_temperature) {
     Simulation s = set_up(std::move(parameters), grid, std::move(particles), lattice);
     if (std::int64_t(mass_energy.size()) != grid.size)
         throw std::invalid_argument("the saved mass-energy does not fit the grid");
     s.nodes.mass_energy = mass_energy;
+    s.least_temperature = least_temperature;
+    look_at_surroundings(s);
     find_node_state(s);
     s.time = time;
     s.step = step;
@@ -308,6 +340,7 @@ void update_losses(Simulation& s) {
     make_loss_laws(s.parameters.materials,
                    loss_options(s.parameters.physics)); // throws before anything changes
     make_losses(s);
+    look_at_surroundings(s);
 }
 
 void update_boundary(Simulation& s) {
@@ -331,6 +364,7 @@ void add_particles(Simulation& s, const ParticleList& more) {
     for (std::int64_t i = 0; i < s.grid.size; ++i)
         mass_energy[i] += of_added.mass_energy[i];
     s.ledger.added += total_energy(added);
+    look_at_coldest(s, more);
 
     ParticleList all = list_particles(s.particles);
     const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };

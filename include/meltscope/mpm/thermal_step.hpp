@@ -11,6 +11,9 @@ struct StepOptions {
     bool affine = true;           ///< carry energy gradients to the nodes; false: the values alone (FLIP)
     bool energy_gradient = false; ///< F = -(kappa/c) grad e instead of -kappa grad T
     double blend = 0.0;           ///< b: share of the nodes' own energy in the particles' new one, 0 .. 1
+    /// J/kg, of each material at the lowest temperature that anything in the run can bring about: the affine
+    /// transfer is held back where it would go below. Empty: it never is.
+    std::vector<double> least_energy;
 };
 
 /// Step 5, diffusion: D_i += dt sum_p v_p F_p . grad N_ip, F_p = -kappa(T_p) sum_i T_i grad N_ip.
@@ -20,15 +23,17 @@ void diffuse(const Grid& grid, Particles& particles, const std::vector<EquationO
              const StepOptions& options, double dt, Nodes& nodes);
 
 /// Step 6: e_i* = e_i + D_i / m_i, then the faces of fixed temperature; ghosts follow. With the affine
-/// transfer D_i is first freed of what lumping the mass does to it. Returns the energy in J that those faces
-/// conducted into the material. Leaves D_i and (m e)_i zero and prepares the blend of step 7.
+/// transfer D_i is first freed of what lumping the mass does to it, |q_i| <= e_i - least energy. Returns the
+/// energy in J that those faces conducted into the material. Leaves D_i and (m e)_i zero and prepares the
+/// blend of step 7.
 double update_grid_energy(const Grid& grid, const Particles& particles,
                           const std::vector<EquationOfState>& materials, const Boundary& boundary,
                           const StepOptions& options, double dt, Nodes& nodes);
 
 /// Step 7, G2P, and step 3 of the next step in the same pass:
 /// e_p <- (1 - b) [e_p + sum_i N_ip (e_i* - e_i)] + b sum_i N_ip e_i*, g_p = sum_i e_i* grad N_ip,
-/// (m e)_i = sum_p N_ip m_p (e_p + g_p . (x_i - x_p)).
+/// (m e)_i = sum_p N_ip m_p (e_p + g_p . (x_i - x_p)). g_p is shortened where three quarters of a cell along
+/// it would lead below the least energy; energy is conserved for any g_p.
 void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Particles& particles,
                                Nodes& nodes);
 

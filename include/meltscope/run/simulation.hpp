@@ -51,8 +51,8 @@ struct RunParameters {
 enum class StepLimit { diffusion, beam, max_step, landing };
 
 /// A run in progress: given parameters, state, and what is derived from both. The state proper is time, step,
-/// ledger, particles and the nodes' mass-energy (m e)_i, which carries what step 3 has gathered for the next
-/// step.
+/// ledger, particles, the nodes' mass-energy (m e)_i, which carries what step 3 has gathered for the next
+/// step, and the least temperature.
 struct Simulation {
     RunParameters parameters;
     Grid grid;
@@ -64,6 +64,9 @@ struct Simulation {
     Ledger ledger;
     Particles particles;
     Nodes nodes;
+    /// K, than which nothing in the run so far makes the material colder: of what it started with, of what
+    /// was added, of the faces and of the surroundings. 0 once a face has drawn heat off at a fixed flux.
+    double least_temperature = 0.0;
 
     // Derived from the parameters and the particles' places; made anew when these change.
     std::vector<EquationOfState> eos;
@@ -87,11 +90,11 @@ struct Simulation {
 /// std::out_of_range for particles outside.
 Simulation make_simulation(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice);
 
-/// Goes on from a saved state: as make_simulation, then time, step, dt, ledger and the mass-energy of the
-/// nodes (grid.size doubles as saved from nodes.mass_energy) are put back.
+/// Goes on from a saved state: as make_simulation, then time, step, dt, ledger, the mass-energy of the nodes
+/// (grid.size doubles as saved from nodes.mass_energy) and the least temperature are put back.
 Simulation resume_simulation(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice,
                              double time, std::int64_t step, double dt, const Ledger& ledger,
-                             const Field& mass_energy);
+                             const Field& mass_energy, double least_temperature);
 
 /// The largest step that is stable and follows the beams, s, and which limit rules.
 double largest_step(const Simulation& simulation, StepLimit& limit);

@@ -69,7 +69,7 @@ Simulation restarted(const State& state) {
     std::size_t next = 0;
     for_each_node(grid, [&](std::int64_t at) { mass_energy[at] = state.mass_energy.at(next++); });
     return resume_simulation(heated_parameters(), grid, std::move(list), 2, state.time, steps_before,
-                             state.dt, Ledger{}, mass_energy);
+                             state.dt, Ledger{}, mass_energy, 300.0);
 }
 
 State read_reference() {

@@ -39,7 +39,9 @@ double cooling_error(int cells, ResultTable& table) {
     ParticleList list = lattice_points(grid, 2, [&](const Vec3& x) { return (x - centre).norm() < radius; });
     set_state(
         eos, [](const Vec3&) { return start; }, list);
-    ThermalRun run(grid, eos, Boundary{}, std::move(list), 2);
+    Stepping stepping;
+    stepping.ambient = ambient;
+    ThermalRun run(grid, eos, Boundary{}, std::move(list), 2, stepping);
     const FreeSurface surface = find_free_surface(grid, run.particles, run.nodes, {}, true);
     LossOptions options;
     options.radiation = true;

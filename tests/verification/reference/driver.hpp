@@ -87,6 +87,8 @@ struct Stepping {
     bool affine = true;
     bool energy_gradient = false;
     double blend = -1.0; ///< below zero: tied to dt
+    /// K, that losses can bring about; otherwise the coldest of the start and of the faces
+    double ambient = 1e300;
 };
 
 /// The thermal step, driven directly: particles, nodes and the ledger of one run.
@@ -110,6 +112,12 @@ class ThermalRun {
         options.affine = stepping.affine;
         options.energy_gradient = stepping.energy_gradient;
         start_energy = total_energy(particles);
+        double least = std::min(stepping.ambient, coldest_particle());
+        for (const FaceCondition& face : boundary)
+            if (face.fixes_temperature())
+                least = std::min(least, face.temperature);
+        for (const EquationOfState& eos : materials)
+            options.least_energy.push_back(eos.energy(std::max(0.0, least - 0.01)));
         particles_to_grid(grid, particles, nullptr, nodes);
         favre_mean(grid, materials, boundary, nodes);
         if (options.affine) {

@@ -3,6 +3,7 @@
 #include "meltscope/constants.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -18,11 +19,12 @@ namespace meltscope::viz {
 namespace {
 
 constexpr std::size_t most_path_points = 20000;
+constexpr double dim = 0.45; // opacity of moves without light
 
-double length_of(const std::vector<Vec3>& corners) {
+double length_of(const std::vector<PathCorner>& corners) {
     double sum = 0.0;
     for (std::size_t i = 1; i < corners.size(); ++i) {
-        sum += (corners[i] - corners[i - 1]).norm();
+        sum += (corners[i].position - corners[i - 1].position).norm();
     }
     return sum;
 }
@@ -31,7 +33,8 @@ double length_of(const std::vector<Vec3>& corners) {
 /// jump from ball to ball, at the height of the highest of the points that it is made for.
 class Drape {
   public:
-    Drape(const Geometry& geometry, const Vec3& beam_direction, const std::vector<std::vector<Vec3>>& lines)
+    Drape(const Geometry& geometry, const Vec3& beam_direction,
+          const std::vector<std::vector<PathCorner>>& lines)
         : geometry_(geometry), vertical_(std::abs(beam_direction.z()) > 0.9) {
         if (vertical_) {
             level_rough_ground(lines);
@@ -59,18 +62,19 @@ class Drape {
     }
 
   private:
-    void level_rough_ground(const std::vector<std::vector<Vec3>>& lines) {
+    void level_rough_ground(const std::vector<std::vector<PathCorner>>& lines) {
         constexpr double rough = 3.0; // cells
         constexpr std::size_t most_looks = 4000;
         double low = std::numeric_limits<double>::max();
         double high = std::numeric_limits<double>::lowest();
-        for (const std::vector<Vec3>& line : lines) {
+        for (const std::vector<PathCorner>& line : lines) {
             const double step = std::max(geometry_.nodes.spacing, length_of(line) / most_looks);
             for (std::size_t i = 1; i < line.size(); ++i) {
-                const Vec3 along = line[i] - line[i - 1];
+                const Vec3& from = line[i - 1].position;
+                const Vec3 along = line[i].position - from;
                 const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / step)));
                 for (int piece = 0; piece <= pieces; ++piece) {
-                    const Vec3 point = line[i - 1] + along * piece / pieces;
+                    const Vec3 point = from + along * piece / pieces;
                     const auto height =
                         covers(point) ? geometry_.heights.at(point.x(), point.y()) : std::nullopt;
                     if (height) {
@@ -90,10 +94,10 @@ class Drape {
     std::optional<double> level_; ///< m
 };
 
-/// The path on the surface; with `dash` > 0 every other piece of that length (m), counted from the path's end
-/// so that dashes stand still while the beam eats the path up.
-std::vector<std::vector<Vec3>> drape_path(const std::vector<Vec3>& corners, const Drape& drape, double step,
-                                          double dash) {
+/// What of the path is run with light, or without, on the surface; with `dash` > 0 every other piece of that
+/// length (m), counted from the path's end so that dashes stand still while the beam eats the path up.
+std::vector<std::vector<Vec3>> drape_path(const std::vector<PathCorner>& corners, bool lit,
+                                          const Drape& drape, double step, double dash) {
     std::vector<std::vector<Vec3>> lines;
     if (corners.size() < 2) {
         return lines;
@@ -103,22 +107,26 @@ std::vector<std::vector<Vec3>> drape_path(const std::vector<Vec3>& corners, cons
     double left = total;
     bool pen_down = false;
     for (std::size_t i = 1; i < corners.size(); ++i) {
-        const double length = (corners[i] - corners[i - 1]).norm();
-        const int pieces = std::max(1, static_cast<int>(std::ceil(length / step)));
+        const Vec3& begin = corners[i - 1].position;
+        const Vec3 along = corners[i].position - begin;
+        const double length = along.norm();
+        pen_down = pen_down && corners[i].lit == lit;
+        const int pieces =
+            corners[i].lit == lit ? std::max(1, static_cast<int>(std::ceil(length / step))) : 0;
         for (int piece = 0; piece < pieces; ++piece) {
             const double from = static_cast<double>(piece) / pieces;
             const double to = static_cast<double>(piece + 1) / pieces;
             const double middle = left - length * 0.5 * (from + to);
             const bool gap = dash > 0.0 && std::fmod(middle, 2.0 * dash) > dash;
-            if (gap || !drape.covers(corners[i - 1] + 0.5 * (from + to) * (corners[i] - corners[i - 1]))) {
+            if (gap || !drape.covers(begin + 0.5 * (from + to) * along)) {
                 pen_down = false;
                 continue;
             }
             if (!pen_down) {
-                lines.push_back({drape(corners[i - 1] + from * (corners[i] - corners[i - 1]))});
+                lines.push_back({drape(begin + from * along)});
                 pen_down = true;
             }
-            lines.back().push_back(drape(corners[i - 1] + to * (corners[i] - corners[i - 1])));
+            lines.back().push_back(drape(begin + to * along));
         }
         left -= length;
     }
@@ -135,16 +143,17 @@ std::vector<Vec3> circle(const BeamSnapshot& beam, const Geometry& geometry) {
     constexpr int corners = 72;
     const auto [u, v] = across(beam.beam_direction);
     const Vec3 center = spot_center(beam, geometry);
-    std::vector<Vec3> ring;
+    std::vector<PathCorner> ring;
     for (int i = 0; i <= corners; ++i) {
         const double angle = 2.0 * constants::pi * i / corners;
-        ring.push_back(center + beam.spot_radius * (std::cos(angle) * u + std::sin(angle) * v));
+        ring.push_back({center + beam.spot_radius * (std::cos(angle) * u + std::sin(angle) * v)});
     }
     const Drape drape(geometry, beam.beam_direction, {ring});
-    for (Vec3& point : ring) {
-        point = drape(point);
+    std::vector<Vec3> laid;
+    for (const PathCorner& corner : ring) {
+        laid.push_back(drape(corner.position));
     }
-    return ring;
+    return laid;
 }
 
 /// Columns of light that fade upwards, one a beam that is on.
@@ -212,10 +221,11 @@ LineActor::LineActor(vtkRenderer* renderer) {
     renderer->AddActor(actor_);
 }
 
-void LineActor::update(vtkPolyData* lines, const Rgb& color, double width) {
+void LineActor::update(vtkPolyData* lines, const Rgb& color, double width, double opacity) {
     mapper_->SetInputData(lines);
     actor_->GetProperty()->SetColor(color[0], color[1], color[2]);
     actor_->GetProperty()->SetLineWidth(static_cast<float>(width));
+    actor_->GetProperty()->SetOpacity(opacity);
     actor_->SetVisibility(lines->GetNumberOfCells() > 0);
 }
 
@@ -252,7 +262,8 @@ vtkSmartPointer<vtkPolyData> make_box_edges(const Vec3& lower, const Vec3& upper
 }
 
 TrackActors::TrackActors(vtkRenderer* renderer)
-    : path_to_come_(renderer), path_done_(renderer), liquidus_(renderer), spots_(renderer) {
+    : moves_to_come_(renderer), moves_done_(renderer), path_to_come_(renderer), path_done_(renderer),
+      liquidus_(renderer), spots_(renderer) {
     light_->SetMapper(light_mapper_);
     light_->GetProperty()->LightingOff();
     light_->ForceTranslucentOn();
@@ -266,20 +277,25 @@ void TrackActors::update(const Picture& picture, double view_size, double beam_h
     const Theme& colors = *picture.theme;
     const double step = 2.0 * geometry.nodes.spacing;
     const double dash = 0.008 * view_size;
-    std::vector<std::vector<Vec3>> done;
-    std::vector<std::vector<Vec3>> to_come;
+    std::array<std::vector<std::vector<Vec3>>, 2> done; // without light, with light
+    std::array<std::vector<std::vector<Vec3>>, 2> to_come;
     std::vector<std::vector<Vec3>> rings;
     for (const BeamSnapshot& beam : snapshot.beams) {
         const Drape drape(geometry, beam.beam_direction, {beam.path_done, beam.path_to_come});
-        std::ranges::move(drape_path(beam.path_done, drape, step, 0.0), std::back_inserter(done));
-        std::ranges::move(drape_path(beam.path_to_come, drape, std::min(step, 0.5 * dash), dash),
-                          std::back_inserter(to_come));
+        for (const bool lit : {false, true}) {
+            std::ranges::move(drape_path(beam.path_done, lit, drape, step, 0.0),
+                              std::back_inserter(done[lit]));
+            std::ranges::move(drape_path(beam.path_to_come, lit, drape, std::min(step, 0.5 * dash), dash),
+                              std::back_inserter(to_come[lit]));
+        }
         if (beam.on && beam.power > 0.0) {
             rings.push_back(circle(beam, geometry));
         }
     }
-    path_done_.update(make_lines(done), colors.path_done, 1.1 * picture.line);
-    path_to_come_.update(make_lines(to_come), colors.path_to_come, 0.9 * picture.line);
+    moves_done_.update(make_lines(done[0]), colors.path_done, 0.5 * picture.line, dim);
+    moves_to_come_.update(make_lines(to_come[0]), colors.path_to_come, 0.5 * picture.line, dim);
+    path_done_.update(make_lines(done[1]), colors.path_done, 1.1 * picture.line);
+    path_to_come_.update(make_lines(to_come[1]), colors.path_to_come, 0.9 * picture.line);
     liquidus_.update(picture.instant->pool.line, colors.liquidus, 1.3 * picture.line);
     spots_.update(make_lines(rings), colors.beam, 1.3 * picture.line);
     const auto light = make_light(picture, beam_height);

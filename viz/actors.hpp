@@ -30,7 +30,7 @@ class SurfaceActor {
 class LineActor {
   public:
     explicit LineActor(vtkRenderer* renderer);
-    void update(vtkPolyData* lines, const Rgb& color, double width);
+    void update(vtkPolyData* lines, const Rgb& color, double width, double opacity = 1.0);
     vtkActor* actor() { return actor_; }
 
   private:
@@ -44,7 +44,8 @@ vtkSmartPointer<vtkPolyData> make_lines(const std::vector<std::vector<Vec3>>& li
 /// The edges of a box that face the viewer or not, all twelve.
 vtkSmartPointer<vtkPolyData> make_box_edges(const Vec3& lower, const Vec3& upper);
 
-/// What lies on the material: liquidus line, scan path, beam spots and beams.
+/// What lies on the material: liquidus line, scan path (what is run without light thin and dim), beam spots
+/// and beams.
 class TrackActors {
   public:
     explicit TrackActors(vtkRenderer* renderer);
@@ -53,8 +54,8 @@ class TrackActors {
     void update(const Picture& picture, double view_size, double beam_height);
 
   private:
-    LineActor path_to_come_;
-    LineActor path_done_;
+    LineActor moves_to_come_, moves_done_; ///< without light
+    LineActor path_to_come_, path_done_;
     LineActor liquidus_;
     LineActor spots_;
     vtkNew<vtkActor> light_;

@@ -116,23 +116,27 @@ std::optional<double> next_corner_time(const ScanPath& path, double time) {
 
 PathCorners corners_at(const ScanPath& path, double time) {
     const std::vector<double> end_times = segment_end_times(path);
-    const auto add = [](std::vector<Vec3>& corners, const Vec3& corner) {
-        if (corners.empty() || corners.back() != corner) {
-            corners.push_back(corner);
+    const auto add = [](std::vector<PathCorner>& corners, const Vec3& position, bool lit) {
+        if (corners.empty() || corners.back().position != position) {
+            corners.push_back({position, lit});
         }
+    };
+    const auto lit = [&](std::size_t i) {
+        const PathSegment& segment = path.segments[i];
+        return segment.kind == Kind::line && segment.laser_on && segment.power.value_or(1.0) > 0.0;
     };
     PathCorners corners;
     corners.done = path.passed;
-    add(corners.done, path.start);
+    add(corners.done, path.start, true);
     const std::size_t index = time < path.start_time ? 0 : segment_at(end_times, time);
     for (std::size_t i = 0; i < index; ++i) {
-        add(corners.done, path.segments[i].end);
+        add(corners.done, path.segments[i].end, lit(i));
     }
     const Vec3 position = beam_at(path, end_times, time).position;
-    add(corners.done, position);
-    add(corners.to_come, position);
+    add(corners.done, position, index < path.segments.size() && lit(index));
+    add(corners.to_come, position, true);
     for (std::size_t i = index; i < path.segments.size(); ++i) {
-        add(corners.to_come, path.segments[i].end);
+        add(corners.to_come, path.segments[i].end, lit(i));
     }
     return corners;
 }

@@ -45,6 +45,7 @@ NLOHMANN_JSON_SERIALIZE_ENUM(ParticleSelection,
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FaceCondition, kind, temperature, coefficient, flux)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PathSegment, kind, end, speed, duration, power, laser_on)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PathCorner, position, lit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScanPath, start, start_time, segments, passed)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Laser, name, power, absorptivity, spot_radius, profile,
                                    super_gaussian_order, volume_depth, volume_width, direction, on, path)
@@ -93,8 +94,8 @@ class Judge {
                 "above zero for a volumetric beam");
         between(laser.direction.norm(), 1.0 - 1e-6, 1.0 + 1e-6, "the length of lasers.direction");
         check_path(laser.path);
-        for (const Vec3& corner : laser.path.passed)
-            require(corner.allFinite(), "lasers.path.passed", "of numbers");
+        for (const PathCorner& corner : laser.path.passed)
+            require(corner.position.allFinite(), "lasers.path.passed", "of numbers");
     }
     void judge(const PhysicsOptions& physics) const {
         if (physics.blend_time)

@@ -235,7 +235,8 @@ std::vector<Measure> measure(const NodeLattice& nodes, const std::vector<double>
 Vec3 level_direction(const BeamSnapshot& beam) {
     Vec3 along = beam.scan_direction;
     for (std::size_t i = beam.path_done.size(); along.norm() < 0.5 && i > 1; --i)
-        if (const Vec3 came = beam.path_done[i - 1] - beam.path_done[i - 2]; came.norm() > 0.0)
+        if (const Vec3 came = beam.path_done[i - 1].position - beam.path_done[i - 2].position;
+            came.norm() > 0.0)
             along = came.normalized();
     along.z() = 0.0;
     return along.norm() > 1e-12 ? Vec3(along.normalized()) : Vec3(Vec3::UnitX());

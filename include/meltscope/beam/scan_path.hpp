@@ -39,6 +39,14 @@ struct BeamPosition {
     bool finished = false;              ///< the path has ended
 };
 
+/// A corner of a path as it is drawn.
+struct PathCorner {
+    Vec3 position = Vec3::Zero(); ///< m
+    bool lit = true;              ///< the way here from the corner before is run with light
+
+    bool operator==(const PathCorner&) const = default;
+};
+
 /// The path of one beam: a start point and time, then segments. A plain value; a checkpoint can hold it.
 struct ScanPath {
     Vec3 start = Vec3::Zero(); ///< m
@@ -46,7 +54,7 @@ struct ScanPath {
     std::vector<PathSegment> segments;
     /// m, corners run before `start` by a path that was edited under way; pictures show them, nothing else
     /// uses them
-    std::vector<Vec3> passed;
+    std::vector<PathCorner> passed;
 
     bool operator==(const ScanPath&) const = default;
 };
@@ -71,10 +79,11 @@ BeamPosition beam_at(const ScanPath& path, const std::vector<double>& end_times,
 /// The first instant strictly after `time` at which a segment begins or ends; none after the path's end.
 std::optional<double> next_corner_time(const ScanPath& path, double time);
 
-/// Corners run before a time and still to come: `done` ends and `to_come` begins where the beam is.
+/// Corners run before a time and still to come: `done` ends and `to_come` begins where the beam is. Jumps and
+/// lines without power are run without light, whatever the laser's own switch says.
 struct PathCorners {
-    std::vector<Vec3> done;    ///< m
-    std::vector<Vec3> to_come; ///< m
+    std::vector<PathCorner> done;
+    std::vector<PathCorner> to_come;
 };
 PathCorners corners_at(const ScanPath& path, double time);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "meltscope/beam/scan_path.hpp"
 #include "meltscope/vec3.hpp"
 
 #include <array>
@@ -47,9 +48,9 @@ struct BeamSnapshot {
     double speed = 0.0;                 ///< m/s
     double spot_radius = 0.0;           ///< m, 1/e^2
     bool on = false;
-    std::vector<Vec3> path_done;    ///< m, corners of the path up to the beam
-    std::vector<Vec3> path_to_come; ///< m, corners from the beam to the end
-    std::vector<PoolFigures> pools; ///< the beam's own pool in its own frame, one an isotherm
+    std::vector<PathCorner> path_done;    ///< of the path up to the beam
+    std::vector<PathCorner> path_to_come; ///< from the beam to the end
+    std::vector<PoolFigures> pools;       ///< the beam's own pool in its own frame, one an isotherm
 };
 
 /// The horizontal direction that a beam's pool is measured along and pictures look across: that of its scan,

@@ -77,8 +77,31 @@ TEST(ScanPath, corners_part_at_the_beam) {
     ASSERT_EQ(corners.done.size(), 3u);
     ASSERT_EQ(corners.to_come.size(), 2u);
     EXPECT_EQ(corners.done.back(), corners.to_come.front());
-    EXPECT_LT((corners.done.back() - Vec3(2e-3, 3e-3, 0.0)).norm(), 1e-15);
-    EXPECT_EQ(corners.to_come.back(), path_end(path));
+    EXPECT_LT((corners.done.back().position - Vec3(2e-3, 3e-3, 0.0)).norm(), 1e-15);
+    EXPECT_EQ(corners.to_come.back().position, path_end(path));
+}
+
+TEST(ScanPath, corners_tell_what_is_run_with_light) {
+    ScanPath path; // a line, a way back without light, a line of no power, one with light, a jump
+    append_line(path, Vec3(1e-3, 0.0, 0.0), 1.0);
+    append_jump(path, Vec3(0.0, 1e-3, 0.0), 1.0);
+    append_line(path, Vec3(1e-3, 1e-3, 0.0), 1.0, 0.0);
+    append_line(path, Vec3(0.0, 1e-3, 0.0), 1.0);
+    append_jump(path, Vec3(0.0, 0.0, 0.0));
+    const auto lit = [](const std::vector<PathCorner>& corners) {
+        std::vector<bool> flags;
+        for (std::size_t i = 1; i < corners.size(); ++i) {
+            flags.push_back(corners[i].lit);
+        }
+        return flags;
+    };
+    const double way_back = 1e-3 + 0.5e-3;
+    EXPECT_EQ(lit(corners_at(path, way_back).done), (std::vector<bool>{true, false}));
+    EXPECT_EQ(lit(corners_at(path, way_back).to_come), (std::vector<bool>{false, false, true, false}));
+    EXPECT_EQ(lit(corners_at(path, 1.0).done), (std::vector<bool>{true, false, false, true, false}));
+    // What was run is still known after the path was changed under way.
+    const ScanPath rest = path_from(path, way_back);
+    EXPECT_EQ(lit(corners_at(rest, 1.0).done), (std::vector<bool>{true, false, false, false, true, false}));
 }
 
 TEST(ScanPath, jump_takes_no_time) {

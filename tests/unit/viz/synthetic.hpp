@@ -90,8 +90,8 @@ inline std::shared_ptr<Snapshot> make_snapshot(SyntheticPlate& plate, double tim
     beam.speed = speed;
     beam.spot_radius = 50e-6;
     beam.on = true;
-    beam.path_done = {{0.3e-3, 0.0, 0.0}, beam.position};
-    beam.path_to_come = {beam.position, {1.7e-3, 0.0, 0.0}};
+    beam.path_done = {{{0.3e-3, 0.0, 0.0}}, {beam.position}};
+    beam.path_to_come = {{beam.position}, {{1.7e-3, 0.0, 0.0}}};
     snapshot->beams.push_back(beam);
     // Grows as a real pool does at the start of a track.
     const double grown = 1.0 - std::exp(-time / 200e-6);

@@ -199,8 +199,7 @@ ScanPath path_from(const ScanPath& path, double time) {
     ScanPath rest;
     rest.start = beam_at(path, end_times, time).position;
     rest.start_time = time;
-    rest.passed = corners_at(path, time).done;
-    rest.passed.pop_back(); // it is where the rest starts
+    rest.passed = corners_at(path, time).done; // the last is where the rest starts
     rest.segments.assign(path.segments.begin() + static_cast<std::ptrdiff_t>(index), path.segments.end());
     if (rest.segments.empty()) {
         return rest;

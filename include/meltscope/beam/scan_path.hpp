@@ -52,8 +52,8 @@ struct ScanPath {
     Vec3 start = Vec3::Zero(); ///< m
     double start_time = 0.0;   ///< s
     std::vector<PathSegment> segments;
-    /// m, corners run before `start` by a path that was edited under way; pictures show them, nothing else
-    /// uses them
+    /// Corners run up to `start` by a path that was edited under way; pictures show them, nothing else uses
+    /// them.
     std::vector<PathCorner> passed;
 
     bool operator==(const ScanPath&) const = default;

@@ -1,5 +1,7 @@
 #include "bench_phases.hpp"
 
+#include "meltscope/run/heat_sources.hpp"
+
 namespace meltscope {
 namespace {
 
@@ -11,31 +13,6 @@ StepOptions step_options(const Simulation& s) {
     for (const EquationOfState& eos : s.eos)
         options.least_energy.push_back(eos.energy(s.least_temperature));
     return options;
-}
-
-void deposit_laser_heat(Simulation& s) {
-    std::vector<double> energy(std::size_t(s.surface.elements.count()), 0.0);
-    for (std::size_t l = 0; l < s.parameters.lasers.size(); ++l) {
-        const Laser& laser = s.parameters.lasers[l];
-        double power = 0.0;
-        const BeamPosition beam = beam_now(laser, s.time, power);
-        if (power > 0.0 && laser.profile != BeamProfile::volumetric)
-            absorb(s.light_maps[l], laser, beam.position, power, s.surface.elements, energy);
-    }
-    for (double& e : energy)
-        e *= s.dt;
-    deposit(s.grid, s.surface.elements, energy, s.nodes);
-}
-
-void deposit_losses(Simulation& s) {
-    if (s.loss_laws.empty())
-        return;
-    const SurfaceElements& elements = s.surface.elements;
-    std::vector<double> temperature, gain, energy(std::size_t(elements.count()), 0.0);
-    surface_temperatures(s.grid, elements, s.nodes, temperature);
-    surface_gains(s.grid, s.parameters.boundary, elements, s.loss_elements, s.nodes, gain);
-    lose_heat(s.loss_laws, s.eos, elements, s.loss_elements, temperature, gain, s.dt, energy);
-    deposit(s.grid, elements, energy, s.nodes);
 }
 
 } // namespace
@@ -64,9 +41,9 @@ void run_phase(Simulation& s, StepPhase phase) {
     case StepPhase::diffuse:
         return diffuse(s.grid, s.particles, s.eos, options, s.dt, s.nodes);
     case StepPhase::laser:
-        return deposit_laser_heat(s);
+        return deposit_laser_heat(s, s.dt);
     case StepPhase::losses:
-        return deposit_losses(s);
+        return deposit_losses(s, s.dt);
     case StepPhase::update:
         update_grid_energy(s.grid, s.particles, s.eos, s.parameters.boundary, options, s.dt, s.nodes);
         return;

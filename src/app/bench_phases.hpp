@@ -16,7 +16,8 @@ inline constexpr std::array all_phases{StepPhase::diffuse, StepPhase::laser, Ste
 const char* phase_name(StepPhase phase);
 
 /// Does one phase as advance() does it, with the step size of the last step; all of them in their order are a
-/// step but for the choice of its size, the ledger and the search for extremes.
+/// step but for the choice of its size, the ledger and the search for extremes. No quiescent part of the body
+/// is left out.
 void run_phase(Simulation& simulation, StepPhase phase);
 
 } // namespace meltscope

@@ -10,7 +10,7 @@
 namespace meltscope {
 namespace {
 
-/// The figures of scenarios/materials/in625.toml that a step with radiation needs.
+/// The figures of scenarios/materials/in625.toml that a step with radiation needs; and nothing sleeps.
 constexpr const char* in625 = R"(
 [material.in625]
 density = 7569.92
@@ -22,6 +22,7 @@ heat_capacity = {solid = [579.28], liquid = [750.65]}
 emissivity = 0.4
 [physics]
 radiation = true
+quiescent_tolerance = 0.0
 [time]
 end = 1.0
 )";

@@ -19,6 +19,9 @@ constexpr double rays_in_cell = 2.0;
 /// in different ways, and the map's rays pass up to a quarter cell beside the element.
 constexpr double lit_tolerance = 1.0;
 
+/// Elements that a thread looks at before it takes the next lot.
+constexpr std::int64_t elements_in_chunk = 2048;
+
 /// Index of the map cell that holds a point, or -1 outside the map.
 std::int64_t map_cell(const LightMap& map, const Vec3& point) {
     const Vec3 offset = point - map.corner;
@@ -27,6 +30,30 @@ std::int64_t map_cell(const LightMap& map, const Vec3& point) {
     if (a < 0.0 || b < 0.0 || a >= double(map.count_u) || b >= double(map.count_v))
         return -1;
     return std::int64_t(a) + map.count_u * std::int64_t(b);
+}
+
+/// Row of the map's cells that holds a point, or the nearest.
+std::int64_t map_row(const LightMap& map, const Vec3& point) {
+    const double row = std::floor((point - map.corner).dot(map.v) / map.spacing + 0.5);
+    return std::int64_t(std::clamp(row, 0.0, double(map.count_v - 1)));
+}
+
+/// Sorts the lit elements by rows, so that a beam need not look at all of them.
+void sort_into_rows(const SurfaceElements& elements, LightMap& map) {
+    map.row_start.assign(map.count_v + 1, 0);
+    std::vector<std::int64_t> row(elements.count(), -1);
+    for (std::int64_t s = 0; s < elements.count(); ++s)
+        if (map.lit[s]) {
+            row[s] = map_row(map, elements.point[s]);
+            ++map.row_start[row[s] + 1];
+        }
+    for (std::int64_t b = 0; b < map.count_v; ++b)
+        map.row_start[b + 1] += map.row_start[b];
+    map.lit_in_rows.resize(map.row_start.back());
+    std::vector<std::int64_t> next(map.row_start.begin(), map.row_start.end() - 1);
+    for (std::int64_t s = 0; s < elements.count(); ++s)
+        if (map.lit[s])
+            map.lit_in_rows[next[row[s]]++] = s;
 }
 
 } // namespace
@@ -70,12 +97,15 @@ LightMap make_light_map(const Grid& grid, const FreeSurface& surface, const Vec3
             cell >= 0 && elements.normal[s].dot(map.direction) < 0.0 &&
             (elements.point[s] - map.corner).dot(map.direction) <= map.depth[cell] + lit_tolerance * grid.dx;
     }
+    sort_into_rows(elements, map);
     return map;
 }
 
 Absorption absorb(const LightMap& map, const Laser& laser, const Vec3& position, double power,
-                  const SurfaceElements& elements, std::vector<double>& element_power) {
+                  const SurfaceElements& elements, ElementHeat& absorbed) {
     Absorption result;
+    absorbed.element.clear();
+    absorbed.amount.clear();
     if (power <= 0.0)
         return result;
     const BeamShape shape = beam_shape(laser);
@@ -84,26 +114,42 @@ Absorption absorb(const LightMap& map, const Laser& laser, const Vec3& position,
                                   [&](const Vec3& aside) { return flux(shape, 1.0, aside.squaredNorm()); });
     result.missed = power * (1.0 - share);
 
-    std::vector<std::int64_t> hit;
-    std::vector<double> raw; // W
-    double sum = 0.0;
-    for (std::int64_t s = 0; s < elements.count(); ++s) {
-        if (!map.lit[s])
-            continue;
-        const double squared = axis_distance_squared(elements.point[s], position, map.direction);
-        if (!(squared < shape.cutoff_squared))
-            continue;
-        const double cosine = -elements.normal[s].dot(map.direction);
-        hit.push_back(s);
-        raw.push_back(laser.absorptivity * flux(shape, power, squared) * cosine * elements.area[s]);
-        sum += raw.back();
+    const Vec3 aside = (std::sqrt(shape.cutoff_squared) + map.spacing) * map.v;
+    const std::int64_t first = map.row_start[map_row(map, position - aside)];
+    const std::int64_t end = map.row_start[map_row(map, position + aside) + 1];
+    // A list and a sum a chunk, then these in their order: the same for any number of threads.
+    std::vector<ElementHeat> of_chunk((end - first + elements_in_chunk - 1) / elements_in_chunk);
+    std::vector<double> sum_of_chunk(of_chunk.size(), 0.0);
+#pragma omp parallel for schedule(dynamic, 1) if (of_chunk.size() > 2)
+    for (std::size_t c = 0; c < of_chunk.size(); ++c) {
+        const std::int64_t begin = first + std::int64_t(c) * elements_in_chunk;
+        for (std::int64_t n = begin; n < std::min(end, begin + elements_in_chunk); ++n) {
+            const std::int64_t s = map.lit_in_rows[n];
+            const double squared = axis_distance_squared(elements.point[s], position, map.direction);
+            if (!(squared < shape.cutoff_squared))
+                continue;
+            const double cosine = -elements.normal[s].dot(map.direction);
+            const double watt = laser.absorptivity * flux(shape, power, squared) * cosine * elements.area[s];
+            of_chunk[c].element.push_back(s);
+            of_chunk[c].amount.push_back(watt);
+            sum_of_chunk[c] += watt;
+        }
     }
-    if (sum <= 0.0) // light falls on a body that has no free surface there
+    double sum = 0.0;
+    for (std::size_t c = 0; c < of_chunk.size(); ++c) {
+        sum += sum_of_chunk[c];
+        const ElementHeat& some = of_chunk[c];
+        absorbed.element.insert(absorbed.element.end(), some.element.begin(), some.element.end());
+        absorbed.amount.insert(absorbed.amount.end(), some.amount.begin(), some.amount.end());
+    }
+    if (sum <= 0.0) { // light falls on a body that has no free surface there
+        absorbed = {};
         return {0.0, power, 1.0};
+    }
     result.absorbed = laser.absorptivity * power * share;
     result.scale = result.absorbed / sum;
-    for (std::size_t h = 0; h < hit.size(); ++h)
-        element_power[hit[h]] += result.scale * raw[h];
+    for (double& watt : absorbed.amount)
+        watt *= result.scale;
     return result;
 }
 

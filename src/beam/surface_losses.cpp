@@ -1,6 +1,7 @@
 #include "meltscope/beam/surface_losses.hpp"
 
 #include "meltscope/constants.hpp"
+#include "meltscope/mpm/group_stencils.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,6 @@
 
 namespace meltscope {
 namespace {
-
-/// Elements that are added up together; fixed, so that sums do not depend on the number of threads.
-constexpr std::int64_t elements_in_chunk = 2048;
 
 /// Evaporation is taken as linear in the temperature over a step where it cannot change its own flux by more
 /// than a share of weak_evaporation, and where what else heats the element cannot change it by more than
@@ -96,45 +94,53 @@ double evaporating_temperature(const LossLaw& law, const EquationOfState& eos, d
     return t;
 }
 
-/// Losses of one element of area a and mass m in J.
-LossEnergy element_loss(const LossLaw& law, const EquationOfState& eos, double area, double mass,
-                        double temperature, double gain, double dt) {
-    const double a_dt = area * dt;
-    const double radiative = radiative_coefficient(law, temperature);
-    const double s = radiative + law.convection;
-    const double c = eos.heat_capacity(temperature); // J/kg/K
-    const double r = a_dt / mass;
-    double evaporation = 0.0, evaporation_slope = 0.0; // W/m^2, W/m^2/K
-    bool stiff = false;
-    if (law.evaporation > 0.0) {
-        const double to_onset = law.evaporation_onset - temperature;
-        if (to_onset < 0.0) {
-            const double relative_slope =
-                (law.evaporation_temperature / temperature - 0.5) / temperature; // 1/K
-            evaporation = evaporative_flux(law, temperature);
-            evaporation_slope = evaporation * relative_slope;
-            stiff = r * evaporation_slope > weak_evaporation * c ||
-                    std::abs(gain) * relative_slope > weak_change * c;
-        } else {
-            stiff = gain > c * to_onset;
+/// What the elements of a lane group lose, J.
+struct LostLanes {
+    Lanes radiated{0.0}, convected{0.0}, evaporated{0.0};
+};
+
+/// element_loss of a whole lane group; only what is, or may become, hot enough to evaporate is worked out one
+/// by one.
+LostLanes losses_of(const LossLaw& law, const EquationOfState& eos, const Lanes& area, const Lanes& mass,
+                    const Lanes& temperature, const Lanes& gain, double dt) {
+    const Lanes radiative =
+        law.radiation * (temperature * temperature + law.ambient * law.ambient) * (temperature + law.ambient);
+    const Lanes s = radiative + law.convection;
+    const Lanes c = eos.heat_capacity(temperature);
+    const Lanes a_dt = area * dt;
+    const Lanes r = a_dt / mass;
+    const Lanes above_ambient = temperature - law.ambient;
+    const Lanes excess = a_dt * (above_ambient + (gain - r * s * above_ambient) / (c + r * s));
+    LostLanes lost{radiative * excess, law.convection * excess, Lanes(0.0)};
+    if (law.evaporation == 0.0)
+        return lost;
+    const auto evaporates =
+        temperature > law.evaporation_onset || gain > c * (law.evaporation_onset - temperature);
+    if (none_of(evaporates))
+        return lost;
+    for (int lane = 0; lane < lane_count; ++lane)
+        if (evaporates[lane]) {
+            const LossEnergy e =
+                element_loss(law, eos, area[lane], mass[lane], temperature[lane], gain[lane], dt);
+            lost.radiated[lane] = e.radiated;
+            lost.convected[lane] = e.convected;
+            lost.evaporated[lane] = e.evaporated;
         }
-    }
-    if (!stiff) {
-        // c (T' - T) = gain - r [s (T' - T_amb) + q_evaporation(T) + (T' - T) dq_evaporation/dT]
-        const double above_ambient = temperature - law.ambient;
-        const double change =
-            (gain - r * (s * above_ambient + evaporation)) / (c + r * (s + evaporation_slope));
-        const double excess = a_dt * (above_ambient + change);
-        return {radiative * excess, law.convection * excess,
-                a_dt * (evaporation + evaporation_slope * change)};
-    }
-    const double t = evaporating_temperature(law, eos, eos.energy(temperature) + gain, r, s);
-    const double excess = a_dt * (t - law.ambient);
-    return {radiative * excess, law.convection * excess, a_dt * evaporative_flux(law, t)};
+    return lost;
 }
 
 const Field& inertia(const Nodes& nodes) {
     return nodes.inertia.empty() ? nodes.mass : nodes.inertia;
+}
+
+/// Specific energy in J/kg that each node near the surface is about to gain from what D_i holds already.
+void find_gains(const Grid& grid, const Boundary& boundary, LossElements& loss, Nodes& nodes) {
+    fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.increment);
+    const Field& mass = inertia(nodes);
+#pragma omp parallel for schedule(static)
+    for (const std::int64_t i : loss.near)
+        loss.gain[i] = mass[i] > 0.0 ? nodes.increment[i] / mass[i] : 0.0; // none: only sleeping particles
+    mirror_ghosts(grid, boundary, loss.gain);
 }
 
 /// Nodes with mass among the 27 around each element's point.
@@ -173,64 +179,106 @@ LossFlux loss_flux(const LossLaw& law, double temperature) {
             evaporative_flux(law, temperature)};
 }
 
-LossElements make_loss_elements(const Grid& grid, const Boundary& boundary, const Particles& particles,
-                                const SurfaceElements& elements, const Nodes& nodes) {
+LossEnergy element_loss(const LossLaw& law, const EquationOfState& eos, double area, double mass,
+                        double temperature, double gain, double dt) {
+    const double a_dt = area * dt;
+    const double radiative = radiative_coefficient(law, temperature);
+    const double s = radiative + law.convection;
+    const double c = eos.heat_capacity(temperature); // J/kg/K
+    const double r = a_dt / mass;
+    double evaporation = 0.0, evaporation_slope = 0.0; // W/m^2, W/m^2/K
+    bool stiff = false;
+    if (law.evaporation > 0.0) {
+        const double to_onset = law.evaporation_onset - temperature;
+        if (to_onset < 0.0) {
+            const double relative_slope =
+                (law.evaporation_temperature / temperature - 0.5) / temperature; // 1/K
+            evaporation = evaporative_flux(law, temperature);
+            evaporation_slope = evaporation * relative_slope;
+            stiff = r * evaporation_slope > weak_evaporation * c ||
+                    std::abs(gain) * relative_slope > weak_change * c;
+        } else {
+            stiff = gain > c * to_onset;
+        }
+    }
+    if (!stiff) {
+        // c (T' - T) = gain - r [s (T' - T_amb) + q_evaporation(T) + (T' - T) dq_evaporation/dT]
+        const double above_ambient = temperature - law.ambient;
+        const double change =
+            (gain - r * (s * above_ambient + evaporation)) / (c + r * (s + evaporation_slope));
+        const double excess = a_dt * (above_ambient + change);
+        return {radiative * excess, law.convection * excess,
+                a_dt * (evaporation + evaporation_slope * change)};
+    }
+    const double t = evaporating_temperature(law, eos, eos.energy(temperature) + gain, r, s);
+    const double excess = a_dt * (t - law.ambient);
+    return {radiative * excess, law.convection * excess, a_dt * evaporative_flux(law, t)};
+}
+
+LossElements make_loss_elements(const Grid& grid, const Boundary& boundary, const SurfaceElements& elements,
+                                const Nodes& nodes) {
     LossElements loss;
     loss.near = nodes_within_reach(grid, elements, inertia(nodes));
     loss.gain.assign(grid.size, 0.0);
-    for (const std::int64_t q : elements.particle)
-        loss.material.push_back(particles.material[q]);
 
     // The gain of one joule a square metre.
     Nodes even;
     even.mass = inertia(nodes);
     even.increment.assign(grid.size, 0.0);
     deposit(grid, elements, elements.area, even);
+    find_gains(grid, boundary, loss, even);
     std::vector<double> gain;
-    surface_gains(grid, boundary, elements, loss, even, gain);
-    loss.mass.resize(elements.count());
-    for (std::int64_t s = 0; s < elements.count(); ++s)
-        loss.mass[s] = elements.area[s] / gain[s];
+    interpolate_to_surface(grid, elements, loss.gain, gain);
+    loss.area.assign(elements.layout.size(), 0.0);
+    loss.mass.assign(elements.layout.size(), 1.0);
+    for (std::int64_t s = 0; s < elements.count(); ++s) {
+        loss.area[elements.layout.place[s]] = elements.area[s];
+        loss.mass[elements.layout.place[s]] = elements.area[s] / gain[s];
+    }
     return loss;
 }
 
-void surface_gains(const Grid& grid, const Boundary& boundary, const SurfaceElements& elements,
-                   LossElements& loss, Nodes& nodes, std::vector<double>& gain) {
-    fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.increment);
-    const Field& mass = inertia(nodes);
-#pragma omp parallel for schedule(static)
-    for (const std::int64_t i : loss.near)
-        loss.gain[i] = nodes.increment[i] / mass[i];
-    mirror_ghosts(grid, boundary, loss.gain);
-    interpolate_to_surface(grid, elements, loss.gain, gain);
-}
-
-LossEnergy lose_heat(std::span<const LossLaw> laws, const std::vector<EquationOfState>& eos,
-                     const SurfaceElements& elements, const LossElements& loss,
-                     std::span<const double> temperature, std::span<const double> gain, double dt,
-                     std::span<double> energy) {
-    const std::int64_t count = elements.count();
-    std::vector<LossEnergy> of_chunk((count + elements_in_chunk - 1) / elements_in_chunk);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t chunk = 0; chunk < of_chunk.size(); ++chunk) {
-        LossEnergy sum;
-        const std::int64_t first = std::int64_t(chunk) * elements_in_chunk;
-        for (std::int64_t s = first; s < std::min(count, first + elements_in_chunk); ++s) {
-            const int m = loss.material[s];
-            const LossEnergy e = element_loss(laws[m], eos[m], elements.area[s], loss.mass[s], temperature[s],
-                                              gain.empty() ? 0.0 : gain[s], dt);
-            energy[s] -= e.total();
-            sum.radiated += e.radiated;
-            sum.convected += e.convected;
-            sum.evaporated += e.evaporated;
+LossEnergy deposit_losses(const Grid& grid, const Boundary& boundary, std::span<const LossLaw> laws,
+                          const std::vector<EquationOfState>& eos, const SurfaceElements& elements, double dt,
+                          LossElements& loss, Nodes& nodes) {
+    find_gains(grid, boundary, loss, nodes);
+    const LaneLayout& layout = elements.layout;
+    // A sum a block, then these in their order: the same for any number of threads.
+    std::vector<LossEnergy> of_block(layout.blocks.size());
+    for_each_block(layout, [&](const LaneBlock& block) {
+        LostLanes sum;
+        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
+            if (!loss.awake.empty() && !loss.awake[g])
+                continue;
+            const LaneGroup& group = layout.groups[g];
+            NodeSums at_nodes;
+            for (std::int64_t slot = group.first_slot; slot < group.first_slot + group.slots; ++slot) {
+                const std::int64_t at = slot * lane_count;
+                const PointStencil stencil = point_stencil(elements.offset_x.data(), elements.offset_y.data(),
+                                                           elements.offset_z.data(), slot);
+                const Lanes weight = load(&elements.normalization[at]);
+                std::array<Lanes, 1> temperature, gain;
+                stencil.gather(&nodes.temperature[group.corner], grid.stride_y, grid.stride_z, temperature);
+                stencil.gather(&loss.gain[group.corner], grid.stride_y, grid.stride_z, gain);
+                const LostLanes lost =
+                    losses_of(laws[group.kind], eos[group.kind], load(&loss.area[at]), load(&loss.mass[at]),
+                              weight * temperature[0], weight * gain[0], dt);
+                stencil.scatter_value({-weight * (lost.radiated + lost.convected + lost.evaporated)},
+                                      at_nodes);
+                sum.radiated += lost.radiated;
+                sum.convected += lost.convected;
+                sum.evaporated += lost.evaporated;
+            }
+            at_nodes.add_to(nodes.increment.data(), group.corner, grid.stride_y, grid.stride_z);
         }
-        of_chunk[chunk] = sum;
-    }
+        of_block[&block - layout.blocks.data()] = {reduce(sum.radiated), reduce(sum.convected),
+                                                   reduce(sum.evaporated)};
+    });
     LossEnergy total;
-    for (const LossEnergy& sum : of_chunk) {
-        total.radiated += sum.radiated;
-        total.convected += sum.convected;
-        total.evaporated += sum.evaporated;
+    for (const LossEnergy& e : of_block) {
+        total.radiated += e.radiated;
+        total.convected += e.convected;
+        total.evaporated += e.evaporated;
     }
     return total;
 }

@@ -67,6 +67,14 @@ std::string set_ambient(ConsoleState&, Run& run, Arguments& arguments) {
     return written(changed.ambient, quantity::temperature);
 }
 
+std::string set_quiescent_tolerance(ConsoleState&, Run& run, Arguments& arguments) {
+    const double tolerance =
+        arguments.quantity("physics.quiescent_tolerance", quantity::temperature_difference);
+    require_between(tolerance, 0.0, highest_quiescent_tolerance, "physics.quiescent_tolerance", "K");
+    run.simulation.parameters.physics.quiescent_tolerance = tolerance;
+    return written(tolerance, quantity::temperature_difference);
+}
+
 std::string set_blend_time(ConsoleState&, Run& run, Arguments& arguments) {
     PhysicsOptions& physics = run.simulation.parameters.physics;
     if (!physics.affine_transfer)
@@ -158,6 +166,12 @@ std::vector<Parameter> physics_parameters() {
          {},
          [](State, const Run& run) { return shown(physics(run).ambient, "K"); },
          set_ambient},
+        {"physics.quiescent_tolerance",
+         "K, 0 to 10",
+         "Where all is still at its start temperature within this, no work is done.",
+         {},
+         [](State, const Run& run) { return shown(physics(run).quiescent_tolerance, "K"); },
+         set_quiescent_tolerance},
         {"physics.blend_time",
          "s, above 0, or default",
          "Time in which particles take on the nodes' energy.",

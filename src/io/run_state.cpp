@@ -26,6 +26,7 @@ constexpr std::array<std::pair<const char*, double Ledger::*>, 12> ledger_names{
 
 constexpr const char* mass_energy_name = "mass_energy";
 constexpr const char* least_temperature_name = "least_temperature"; // K, one number
+constexpr const char* awake_name = "awake";   // 1: the brick of bins takes part in the step; absent: all do
 constexpr const char* powder_name = "powder"; // 1: homogenised powder that has not melted yet
 
 /// Calls work(storage index of a row's first node) for all rows of nodes, ghosts included, in the order of
@@ -54,6 +55,28 @@ const CheckpointGridArray* find_array(const CheckpointData& data, const char* na
         if (array.name == name)
             return &array;
     return nullptr;
+}
+
+CheckpointGridArray awake_array(const Bricks& bricks) {
+    CheckpointGridArray array{awake_name, {}, {bricks.awake.begin(), bricks.awake.end()}};
+    for (const int axis : {2, 1, 0})
+        array.dims.push_back(std::uint64_t(bricks.count[axis]));
+    return array;
+}
+
+std::vector<char> awake_from(const Grid& grid, const CheckpointData& data) {
+    const CheckpointGridArray* array = find_array(data, awake_name);
+    if (!array)
+        return {};
+    const Index3 count = brick_counts(grid);
+    if (array->values.size() != std::size_t(count.prod()))
+        throw CheckpointError(
+            fmt::format("the checkpoint's /grid/{} has {} values where {} x {} x {} bricks need {}",
+                        awake_name, array->values.size(), count[0], count[1], count[2], count.prod()));
+    std::vector<char> awake;
+    for (const double value : array->values)
+        awake.push_back(value != 0.0);
+    return awake;
 }
 
 /// The nodal field of that name; `elsewhere` fills the padding.
@@ -187,6 +210,8 @@ CheckpointData checkpoint_of(const Run& run, const std::string& scenario) {
                                      std::vector<double>(list.powder.begin(), list.powder.end()));
     data.grid.push_back(without_padding(simulation.grid, mass_energy_name, simulation.nodes.mass_energy));
     data.grid.push_back({least_temperature_name, {1}, {simulation.least_temperature}});
+    if (const Bricks& bricks = simulation.quiescence.bricks; !bricks.awake.empty())
+        data.grid.push_back(awake_array(bricks));
     if (run.layers_laid > 0)
         data.grid.push_back({layers_laid_name, {1}, {double(run.layers_laid)}});
     if (run.solidification)
@@ -222,7 +247,7 @@ Simulation simulation_from(const CheckpointData& data, RunParameters parameters,
     ParticleList particles = particles_from(data.particles, parameters.materials.size());
     return resume_simulation(std::move(parameters), grid, std::move(particles), lattice, data.time, data.step,
                              data.dt, ledger_from_entries(data.ledger), mass_energy,
-                             least_temperature_of(data));
+                             least_temperature_of(data), awake_from(grid, data));
 }
 
 std::int64_t layers_laid_by(const CheckpointData& data) {

@@ -49,8 +49,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PathCorner, position, lit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScanPath, start, start_time, segments, passed)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Laser, name, power, absorptivity, spot_radius, profile,
                                    super_gaussian_order, volume_depth, volume_width, direction, on, path)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PhysicsOptions, affine_transfer, deposit_at_surface, diffuse_energy,
-                                   blend_time, radiation, evaporation, reabsorption, convection, ambient)
+// With defaults: checkpoints from before a setting was there lack it.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PhysicsOptions, affine_transfer, deposit_at_surface,
+                                                diffuse_energy, blend_time, radiation, evaporation,
+                                                reabsorption, convection, ambient, quiescent_tolerance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LevelSetOptions, radius, epsilon)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TimeOptions, end, cfl, max_step)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cadence, every, every_steps)
@@ -121,6 +123,8 @@ class Judge {
         for (const Laser& laser : steering.lasers)
             judge(laser);
         judge(steering.physics);
+        between(steering.physics.quiescent_tolerance, 0.0, highest_quiescent_tolerance,
+                "physics.quiescent_tolerance");
         between(steering.level_set.radius, 0.5, 8.0, "level_set.radius");
         between(steering.level_set.epsilon, 0.01, 8.0, "level_set.epsilon");
         judge(steering.time);

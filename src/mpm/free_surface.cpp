@@ -195,8 +195,12 @@ void divide_areas_by(const Grid& grid, const Field& phi, Field& total) {
 }
 
 /// Lays out the points where the heat goes in and finds their weights' normalization.
-void lay_out(const Grid& grid, const Nodes& nodes, std::span<const Vec3> points, SurfaceElements& elements) {
-    elements.layout = make_lane_layout(grid, points, {}, 0);
+void lay_out(const Grid& grid, const Particles& particles, const Nodes& nodes, std::span<const Vec3> points,
+             SurfaceElements& elements) {
+    std::vector<std::int16_t> material;
+    for (const std::int64_t q : elements.particle)
+        material.push_back(particles.material[q]);
+    elements.layout = make_lane_layout(grid, points, material, 0);
     for (Field* field : {&elements.offset_x, &elements.offset_y, &elements.offset_z, &elements.normalization})
         field->assign(elements.layout.size(), 0.0);
 #pragma omp parallel for schedule(static)
@@ -254,7 +258,7 @@ FreeSurface find_free_surface(const Grid& grid, const Particles& particles, cons
     if (!at_surface)
         for (std::size_t s = 0; s < places.size(); ++s)
             places[s] = particles.position[elements.particle[s]];
-    lay_out(grid, nodes, places, elements);
+    lay_out(grid, particles, nodes, places, elements);
     return surface;
 }
 

@@ -193,4 +193,18 @@ LaneLayout make_lane_layout(const Grid& grid, std::span<const Vec3> points,
     return layout;
 }
 
+GroupRuns all_groups(const LaneLayout& layout) {
+    GroupRuns all;
+    for (int colour = 0; colour < 4; ++colour) {
+        all.colour_start[colour] = std::int64_t(all.runs.size());
+        for (std::int64_t b = layout.colour_start[colour]; b < layout.colour_start[colour + 1]; ++b)
+            if (layout.blocks[b].first_group < layout.blocks[b].last_group)
+                all.runs.push_back(layout.blocks[b]);
+    }
+    all.colour_start[4] = std::int64_t(all.runs.size());
+    for (std::size_t run = 0; run <= all.runs.size(); ++run)
+        all.block_start.push_back(std::int64_t(run)); // one a block
+    return all;
+}
+
 } // namespace meltscope

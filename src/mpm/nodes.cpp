@@ -20,6 +20,19 @@ std::vector<std::int64_t> mixed_nodes(const Grid& grid, const std::vector<Field>
     return mixed;
 }
 
+/// Adds sum_p N_ip value_p over one group.
+void scatter_group(const Grid& grid, const Particles& particles, const LatticeStencils& lattices,
+                   const LaneGroup& group, const Field& value, Field& field) {
+    NodeSums sums;
+    for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+        std::array<Lanes, std::decay_t<decltype(stencil)>::points> s;
+        for (std::size_t p = 0; p < s.size(); ++p)
+            s[p] = load(&value[first + p * lane_count]);
+        stencil.scatter_value(s, sums);
+    });
+    sums.add_to(field.data(), group.corner, grid.stride_y, grid.stride_z);
+}
+
 } // namespace
 
 double mixture_temperature(const std::vector<EquationOfState>& materials,
@@ -56,59 +69,69 @@ double mixture_temperature(const std::vector<EquationOfState>& materials,
 void scatter_to_nodes(const Grid& grid, const Particles& particles, const Field& value, Field& field) {
     const LatticeStencils lattices;
     for_each_block(particles.layout, [&](const LaneBlock& block) {
-        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
+        for (std::int64_t g = block.first_group; g < block.last_group; ++g)
+            scatter_group(grid, particles, lattices, particles.layout.groups[g], value, field);
+    });
+}
+
+void add_node_mass(const Grid& grid, const Particles& particles, const GroupRuns& groups, int material,
+                   Field& mass) {
+    const LatticeStencils lattices;
+    for_each_block(groups, [&](const LaneBlock& run) {
+        for (std::int64_t g = run.first_group; g < run.last_group; ++g) {
             const LaneGroup& group = particles.layout.groups[g];
-            NodeSums sums;
-            for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
-                std::array<Lanes, std::decay_t<decltype(stencil)>::points> s;
-                for (std::size_t p = 0; p < s.size(); ++p)
-                    s[p] = load(&value[first + p * lane_count]);
-                stencil.scatter_value(s, sums);
-            });
-            sums.add_to(field.data(), group.corner, grid.stride_y, grid.stride_z);
+            if (material < 0 || group.kind == material)
+                scatter_group(grid, particles, lattices, group, particles.mass, mass);
         }
     });
 }
 
-Nodes make_nodes(const Grid& grid, const Particles& particles, int materials, const Boundary& boundary) {
-    Nodes nodes;
-    for (Field* field : {&nodes.mass, &nodes.mass_energy, &nodes.temperature, &nodes.increment})
-        field->assign(grid.size, 0.0);
-    nodes.energy.assign(materials, Field(grid.size, 0.0));
-    nodes.new_energy.assign(materials, Field(grid.size, 0.0));
-    nodes.boundary = boundary;
-    nodes.near_fixed_faces = nodes_near_fixed_faces(grid, boundary);
-
-    scatter_to_nodes(grid, particles, particles.mass, nodes.mass);
+void find_node_masses(const Grid& grid, const Particles& particles, const Boundary& boundary, Nodes& nodes) {
+    const auto sum_up = [&](int material, Field& mass) {
+        mass.assign(grid.size, 0.0);
+        add_node_mass(grid, particles, particles.awake, material, mass);
+    };
+    sum_up(-1, nodes.mass);
     if (!nodes.near_fixed_faces.empty()) {
         nodes.inertia = nodes.mass;
         fold_ghosts(grid, boundary, AtFixedFaces::even, nodes.inertia);
     }
     fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.mass);
-
-    if (materials > 1) {
-        for (int a = 0; a < materials; ++a) {
-            Field mass_of_a(particles.layout.size(), 0.0);
-            for (const LaneGroup& group : particles.layout.groups)
-                if (group.kind == a)
-                    for (std::int64_t at = group.first_slot * lane_count;
-                         at < (group.first_slot + group.slots) * lane_count; ++at)
-                        mass_of_a[at] = particles.mass[at];
-            nodes.material_mass.emplace_back(grid.size, 0.0);
-            scatter_to_nodes(grid, particles, mass_of_a, nodes.material_mass.back());
-            fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.material_mass.back());
-        }
-        nodes.mixed = mixed_nodes(grid, nodes.material_mass);
+    for (std::size_t a = 0; a < nodes.material_mass.size(); ++a) {
+        sum_up(int(a), nodes.material_mass[a]);
+        fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.material_mass[a]);
     }
+}
+
+std::vector<NodeSpan> all_nodes(const Grid& grid) {
+    std::vector<NodeSpan> spans;
+    for (std::int64_t row = 0; row < grid.size; row += grid.stride_y)
+        spans.push_back({row, row + grid.stride_y});
+    return spans;
+}
+
+Nodes make_nodes(const Grid& grid, const Particles& particles, int materials, const Boundary& boundary) {
+    Nodes nodes;
+    nodes.spans = all_nodes(grid);
+    for (Field* field : {&nodes.mass_energy, &nodes.temperature, &nodes.increment})
+        field->assign(grid.size, 0.0);
+    nodes.energy.assign(materials, Field(grid.size, 0.0));
+    nodes.new_energy.assign(materials, Field(grid.size, 0.0));
+    nodes.boundary = boundary;
+    nodes.near_fixed_faces = nodes_near_fixed_faces(grid, boundary);
+    if (materials > 1)
+        nodes.material_mass.resize(materials);
+    find_node_masses(grid, particles, boundary, nodes);
+    if (materials > 1)
+        nodes.mixed = mixed_nodes(grid, nodes.material_mass);
     return nodes;
 }
 
-void particles_to_grid(const Grid& grid, const Particles& particles, const std::vector<Field>* gradient_of,
-                       Nodes& nodes) {
+void add_node_energy(const Grid& grid, const Particles& particles, const GroupRuns& groups,
+                     const std::vector<Field>* gradient_of, Field& mass_energy) {
     const LatticeStencils lattices;
-    std::fill(nodes.mass_energy.begin(), nodes.mass_energy.end(), 0.0);
-    for_each_block(particles.layout, [&](const LaneBlock& block) {
-        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
+    for_each_block(groups, [&](const LaneBlock& run) {
+        for (std::int64_t g = run.first_group; g < run.last_group; ++g) {
             const LaneGroup& group = particles.layout.groups[g];
             NodeSums sums;
             for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
@@ -131,40 +154,45 @@ void particles_to_grid(const Grid& grid, const Particles& particles, const std::
                 }
                 stencil.scatter_affine(gradient, sums);
             });
-            sums.add_to(nodes.mass_energy.data(), group.corner, grid.stride_y, grid.stride_z);
+            sums.add_to(mass_energy.data(), group.corner, grid.stride_y, grid.stride_z);
         }
     });
 }
 
+void particles_to_grid(const Grid& grid, const Particles& particles, const std::vector<Field>* gradient_of,
+                       Nodes& nodes) {
+    std::fill(nodes.mass_energy.begin(), nodes.mass_energy.end(), 0.0);
+    add_node_energy(grid, particles, particles.awake, gradient_of, nodes.mass_energy);
+}
+
 void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
-                Nodes& nodes) {
+                const std::vector<NodeSpan>& spans, Nodes& nodes) {
     fold_ghosts(grid, boundary, AtFixedFaces::leave, nodes.mass_energy);
     const int count = int(materials.size());
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < grid.size; i += lane_count) {
+    for_each_node_lanes(spans, [&](std::int64_t i) {
         const Lanes mass = load(&nodes.mass[i]);
         const auto filled = mass > 0.0;
-        if (none_of(filled)) {
-            store(Lanes(0.0), &nodes.temperature[i]);
-            continue;
-        }
+        if (none_of(filled))
+            return;
         const Lanes energy =
             select(filled, load(&nodes.mass_energy[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
+        Lanes temperature = load(&nodes.temperature[i]);
         if (count == 1) {
             store(energy, &nodes.energy[0][i]);
-            store(select(filled, materials[0].temperature(energy), Lanes(0.0)), &nodes.temperature[i]);
-            continue;
+            store(select(filled, materials[0].temperature(energy), temperature), &nodes.temperature[i]);
+            return;
         }
-        Lanes temperature(0.0);
         for (int a = 0; a < count; ++a) {
             const auto present = load(&nodes.material_mass[a][i]) > 0.0;
             store(select(present, energy, Lanes(0.0)), &nodes.energy[a][i]);
             where(present, temperature) = materials[a].temperature(energy);
         }
         store(temperature, &nodes.temperature[i]);
-    }
+    });
 #pragma omp parallel for schedule(static)
     for (std::int64_t i : nodes.mixed) {
+        if (!(nodes.mass[i] > 0.0))
+            continue;
         const double t = mixture_temperature(materials, nodes.material_mass, i, nodes.mass_energy[i]);
         nodes.temperature[i] = t;
         for (int a = 0; a < count; ++a)
@@ -177,12 +205,18 @@ void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials,
     for (int f = 0; f < 6; ++f)
         if (boundary[f].fixes_temperature())
             for_each_face_node(grid, f, [&](std::int64_t ghost, std::int64_t face, std::int64_t mirror) {
-                if (nodes.mass[face] > 0.0)
+                // What has no temperature no particle reaches, be it awake or asleep.
+                if (nodes.temperature[face] != 0.0)
                     nodes.temperature[face] = boundary[f].temperature;
-                if (nodes.mass[ghost] > 0.0)
+                if (nodes.temperature[ghost] != 0.0)
                     nodes.temperature[ghost] = 2.0 * boundary[f].temperature - nodes.temperature[mirror];
             });
     mirror_ghosts(grid, boundary, nodes.temperature); // last: where two faces meet it copies what was set
+}
+
+void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
+                Nodes& nodes) {
+    favre_mean(grid, materials, boundary, nodes.spans, nodes);
 }
 
 } // namespace meltscope

@@ -5,6 +5,7 @@ namespace meltscope {
 Particles make_particles(const Grid& grid, ParticleList list, int lattice) {
     Particles particles;
     particles.layout = make_lane_layout(grid, list.position, list.material, lattice);
+    particles.awake = all_groups(particles.layout);
     particles.lattice = lattice;
     const std::int64_t size = particles.layout.size();
     for (Field* field : {&particles.offset_x, &particles.offset_y, &particles.offset_z, &particles.mass,

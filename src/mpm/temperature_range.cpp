@@ -9,21 +9,13 @@
 namespace meltscope {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// Whole kelvins begin at 0.37, so that round-off of a plate at a round temperature does not straddle two.
 constexpr double kelvin_begins = 0.37;
 
-double rounded_down(double t) {
-    return std::floor(t - kelvin_begins) + kelvin_begins;
-}
-
-double rounded_up(double t) {
-    return std::ceil(t - kelvin_begins) + kelvin_begins;
-}
-
 struct Bounds {
-    double low = infinite, high = -infinite;
+    double low = unbounded, high = -unbounded;
 
     void include(const Bounds& other) {
         low = std::min(low, other.low);
@@ -33,13 +25,13 @@ struct Bounds {
 
 /// Bounds of the node temperatures around a group; nodes without one (zero) are left out.
 Bounds node_bounds(const Grid& grid, const LaneGroup& group, const double* temperature, bool& finite) {
-    Lanes low(infinite), high(-infinite), sum(0.0);
+    Lanes low(unbounded), high(-unbounded), sum(0.0);
     for (int k = 0; k < 3; ++k)
         for (int j = 0; j < 3; ++j)
             for (int i = 0; i < 3; ++i) {
                 const Lanes t = load(temperature + group.corner + i + j * grid.stride_y + k * grid.stride_z);
-                low = min(low, select(t == 0.0, Lanes(infinite), t));
-                high = max(high, select(t == 0.0, Lanes(-infinite), t));
+                low = min(low, select(t == 0.0, Lanes(unbounded), t));
+                high = max(high, select(t == 0.0, Lanes(-unbounded), t));
                 sum += abs(t);
             }
     finite = std::isfinite(reduce(sum)); // comparisons with what is not a number say nothing
@@ -48,20 +40,28 @@ Bounds node_bounds(const Grid& grid, const LaneGroup& group, const double* tempe
 
 Bounds particle_bounds(const Grid& grid, const Particles& particles, const LatticeStencils& lattices,
                        const LaneGroup& group, const double* temperature) {
-    Lanes low(infinite), high(-infinite);
+    Lanes low(unbounded), high(-unbounded);
     for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
         std::array<Lanes, std::decay_t<decltype(stencil)>::points> t;
         stencil.gather(temperature + group.corner, grid.stride_y, grid.stride_z, t);
         for (std::size_t p = 0; p < t.size(); ++p) {
             const auto padding = load(&particles.mass[first + p * lane_count]) == 0.0;
-            low = min(low, select(padding, Lanes(infinite), t[p]));
-            high = max(high, select(padding, Lanes(-infinite), t[p]));
+            low = min(low, select(padding, Lanes(unbounded), t[p]));
+            high = max(high, select(padding, Lanes(-unbounded), t[p]));
         }
     });
     return {hmin(low), hmax(high)};
 }
 
 } // namespace
+
+double down_to_whole_kelvin(double t) {
+    return std::floor(t - kelvin_begins) + kelvin_begins;
+}
+
+double up_to_whole_kelvin(double t) {
+    return std::ceil(t - kelvin_begins) + kelvin_begins;
+}
 
 TemperatureRange particle_temperature_range(const Grid& grid, const Particles& particles,
                                             const Nodes& nodes) {
@@ -75,17 +75,20 @@ TemperatureRange particle_temperature_range(const Grid& grid, const Particles& p
         // same whichever thread saw what.
         Bounds seen;
         bool seen_finite = true;
-#pragma omp for schedule(static) nowait
-        for (std::size_t g = 0; g < particles.layout.groups.size(); ++g) {
-            const LaneGroup& group = particles.layout.groups[g];
-            bool finite = true;
-            const Bounds bounds = node_bounds(grid, group, temperature, finite);
-            seen_finite = seen_finite && finite;
-            if (rounded_down(bounds.low) < seen.low || rounded_up(bounds.high) > seen.high) {
-                const Bounds exact = particle_bounds(grid, particles, lattices, group, temperature);
-                seen.include({rounded_down(exact.low), rounded_up(exact.high)});
+#pragma omp for schedule(dynamic, 1) nowait
+        for (std::size_t r = 0; r < particles.awake.runs.size(); ++r)
+            for (std::int64_t g = particles.awake.runs[r].first_group; g < particles.awake.runs[r].last_group;
+                 ++g) {
+                const LaneGroup& group = particles.layout.groups[g];
+                bool finite = true;
+                const Bounds bounds = node_bounds(grid, group, temperature, finite);
+                seen_finite = seen_finite && finite;
+                if (down_to_whole_kelvin(bounds.low) < seen.low ||
+                    up_to_whole_kelvin(bounds.high) > seen.high) {
+                    const Bounds exact = particle_bounds(grid, particles, lattices, group, temperature);
+                    seen.include({down_to_whole_kelvin(exact.low), up_to_whole_kelvin(exact.high)});
+                }
             }
-        }
 #pragma omp critical
         {
             all.include(seen);

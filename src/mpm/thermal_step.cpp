@@ -10,9 +10,8 @@ namespace {
 /// e(T_i) of the one material, into the storage of e*, which step 6 fills later.
 const Field& energy_of_temperature(const EquationOfState& eos, Nodes& nodes) {
     Field& energy = nodes.new_energy[0];
-#pragma omp parallel for schedule(static)
-    for (std::size_t i = 0; i < energy.size(); i += lane_count)
-        store(eos.energy(load(&nodes.temperature[i])), &energy[i]);
+    for_each_node_lanes(nodes.spans,
+                        [&](std::int64_t i) { store(eos.energy(load(&nodes.temperature[i])), &energy[i]); });
     return energy;
 }
 
@@ -47,8 +46,7 @@ void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materia
                    const StepOptions& options, const Field& inertia, double dt, const Nodes& nodes,
                    Field& q) {
     const double scale = 2.0 * dt / (grid.dx * grid.dx);
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < grid.size; i += lane_count) {
+    for_each_node_lanes(nodes.spans, [&](std::int64_t i) {
         const Lanes mass = load(&inertia[i]);
         Lanes result(0.0);
         if (any_of(mass > 0.0)) {
@@ -69,7 +67,7 @@ void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materia
             }
         }
         store(result, &q[i]);
-    }
+    });
     for (const std::int64_t i : nodes.mixed)
         q[i] = 0.0;
     mirror_ghosts(grid, boundary, q);
@@ -94,7 +92,7 @@ double undo_lumping(const Grid& grid, const Particles& particles,
     double change = -sum_near_fixed_faces(nodes, nodes.increment);
 
     const LatticeStencils lattices;
-    for_each_block(particles.layout, [&](const LaneBlock& block) {
+    for_each_block(particles.awake, [&](const LaneBlock& block) {
         for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
             const LaneGroup& group = particles.layout.groups[g];
             NodeSums sums;
@@ -113,9 +111,9 @@ double undo_lumping(const Grid& grid, const Particles& particles,
         change += nodes.mass[i] * q[i];
 
     fold_ghosts(grid, boundary, AtFixedFaces::odd, nodes.increment);
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < grid.size; i += lane_count)
+    for_each_node_lanes(nodes.spans, [&](std::int64_t i) {
         store(load(&nodes.increment[i]) + load(&inertia[i]) * load(&q[i]), &nodes.increment[i]);
+    });
     return change;
 }
 
@@ -144,7 +142,7 @@ void diffuse(const Grid& grid, Particles& particles, const std::vector<EquationO
         options.energy_gradient ? energy_of_temperature(materials[0], nodes).data() : nullptr;
     const bool has_powder = !particles.powder.empty();
     const double scale = -dt / (grid.dx * grid.dx); // gradients come per cell, one of T and one of N
-    for_each_block(particles.layout, [&](const LaneBlock& block) {
+    for_each_block(particles.awake, [&](const LaneBlock& block) {
         for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
             const LaneGroup& group = particles.layout.groups[g];
             const EquationOfState& eos = materials[group.kind];
@@ -196,18 +194,19 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
     if (options.affine)
         conducted -= undo_lumping(grid, particles, materials, boundary, options, inertia, dt, nodes);
 
-        // e_i* = e_i + D_i / m_i
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < grid.size; i += lane_count) {
+    // e_i* = e_i + D_i / m_i
+    for_each_node_lanes(nodes.spans, [&](std::int64_t i) {
         const Lanes mass = load(&inertia[i]);
         const auto filled = mass > 0.0;
         const Lanes rise =
             select(filled, load(&nodes.increment[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
         for (int a = 0; a < count; ++a)
             store(load(&nodes.energy[a][i]) + rise, &nodes.new_energy[a][i]);
-    }
+    });
 #pragma omp parallel for schedule(static)
     for (const std::int64_t i : nodes.mixed) {
+        if (!(nodes.mass[i] > 0.0))
+            continue;
         const double total = nodes.mass_energy[i] + nodes.increment[i] * nodes.mass[i] / inertia[i];
         const double t = mixture_temperature(materials, nodes.material_mass, i, total);
         for (int a = 0; a < count; ++a)
@@ -230,13 +229,13 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
 
     // The blend of step 7 needs sum_i N_ip (e_i* - (1 - b) e_i) only.
     const double keep = 1.0 - options.blend;
-#pragma omp parallel for schedule(static)
-    for (std::int64_t i = 0; i < grid.size; i += lane_count) {
+    for_each_node_lanes(nodes.spans, [&](std::int64_t i) {
         for (int a = 0; a < count; ++a)
             store(load(&nodes.new_energy[a][i]) - keep * load(&nodes.energy[a][i]), &nodes.energy[a][i]);
         store(Lanes(0.0), &nodes.increment[i]);
-        store(Lanes(0.0), &nodes.mass_energy[i]);
-    }
+        const auto filled = load(&nodes.mass[i]) > 0.0; // elsewhere sleeping particles' energy stays
+        store(select(filled, Lanes(0.0), load(&nodes.mass_energy[i])), &nodes.mass_energy[i]);
+    });
     return conducted;
 }
 
@@ -245,7 +244,7 @@ void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Par
     const LatticeStencils lattices;
     const double keep = 1.0 - options.blend;
     const bool limited = options.affine && !options.least_energy.empty();
-    for_each_block(particles.layout, [&](const LaneBlock& block) {
+    for_each_block(particles.awake, [&](const LaneBlock& block) {
         for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
             const LaneGroup& group = particles.layout.groups[g];
             const double* change = nodes.energy[group.kind].data() + group.corner;

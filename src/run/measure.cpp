@@ -2,6 +2,8 @@
 
 #include "meltscope/mpm/group_stencils.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -148,21 +150,22 @@ bool wanted(ParticleSelection selection, double phi_hat, double liquid_fraction)
     return false;
 }
 
-/// Fills the snapshot's particles and counts the molten ones.
-void sample_particles(const Simulation& s, ParticleSelection selection, Snapshot& snapshot) {
+struct SampledRange {
+    ParticleSample sample;
+    std::int64_t liquid_particles = 0;
+};
+
+SampledRange sample_range(const Simulation& s, ParticleSelection selection, const Field& temperature,
+                          const Field& phi_hat, std::int64_t first, std::int64_t last) {
     const Particles& particles = s.particles;
-    const Field temperature = particle_temperatures(s.grid, particles, s.nodes);
-    const bool needs_phi = selection == ParticleSelection::surface || selection == ParticleSelection::melt ||
-                           selection == ParticleSelection::all;
-    const Field phi_hat =
-        needs_phi ? interpolate_to_particles(s.grid, particles, s.surface.phi_hat) : Field{};
-    ParticleSample& sample = snapshot.particles;
-    for (std::int64_t q = 0; q < particles.count(); ++q) {
+    SampledRange range;
+    ParticleSample& sample = range.sample;
+    for (std::int64_t q = first; q < last; ++q) {
         const std::int64_t at = particles.layout.place[q];
         const EquationOfState& eos = s.eos[particles.material[q]];
         const double fraction = eos.liquid_fraction(temperature[at]);
-        snapshot.liquid_particles += fraction >= 1.0;
-        if (!needs_phi || !wanted(selection, phi_hat[at], fraction))
+        range.liquid_particles += fraction >= 1.0;
+        if (phi_hat.empty() || !wanted(selection, phi_hat[at], fraction))
             continue;
         const Vec3& x = particles.position[q];
         sample.position.insert(sample.position.end(), {x[0], x[1], x[2]});
@@ -172,6 +175,40 @@ void sample_particles(const Simulation& s, ParticleSelection selection, Snapshot
         sample.phi_hat.push_back(phi_hat[at]);
         sample.id.push_back(particles.id[q]);
         sample.material.push_back(particles.material[q]);
+    }
+    return range;
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+/// Fills the snapshot's particles and counts the molten ones.
+void sample_particles(const Simulation& s, ParticleSelection selection, Snapshot& snapshot) {
+    const Particles& particles = s.particles;
+    const Field temperature = particle_temperatures(s.grid, particles, s.nodes);
+    const bool needs_phi = selection == ParticleSelection::surface || selection == ParticleSelection::melt ||
+                           selection == ParticleSelection::all;
+    const Field phi_hat =
+        needs_phi ? interpolate_to_particles(s.grid, particles, s.surface.phi_hat) : Field{};
+    const std::int64_t count = particles.count(), parts = omp_get_max_threads();
+    std::vector<SampledRange> ranges(parts);
+#pragma omp parallel for schedule(static)
+    for (std::int64_t n = 0; n < parts; ++n)
+        ranges[n] =
+            sample_range(s, selection, temperature, phi_hat, n * count / parts, (n + 1) * count / parts);
+    // In the order of the particles, however many parts there are.
+    ParticleSample& sample = snapshot.particles;
+    for (const SampledRange& range : ranges) {
+        snapshot.liquid_particles += range.liquid_particles;
+        append(sample.position, range.sample.position);
+        append(sample.temperature, range.sample.temperature);
+        append(sample.specific_energy, range.sample.specific_energy);
+        append(sample.liquid_fraction, range.sample.liquid_fraction);
+        append(sample.phi_hat, range.sample.phi_hat);
+        append(sample.id, range.sample.id);
+        append(sample.material, range.sample.material);
     }
 }
 
@@ -192,7 +229,7 @@ Snapshot take_snapshot(const Simulation& s, ParticleSelection particles) {
     };
     snapshot.phi = share(without_padding(s.grid, s.surface.phi));
     snapshot.phi_hat = share(without_padding(s.grid, s.surface.phi_hat));
-    snapshot.mass = share(without_padding(s.grid, s.nodes.mass));
+    snapshot.mass = share(without_padding(s.grid, node_masses(s)));
     snapshot.temperature = share(node_temperatures(s));
     snapshot.peak_temperature = hottest_inside(snapshot.nodes, *snapshot.phi, *snapshot.temperature);
     snapshot.absorbed_energy = s.ledger.absorbed;

@@ -1,15 +1,17 @@
 #include "meltscope/run/simulation.hpp"
 
-#include "meltscope/beam/volume_heating.hpp"
-#include "meltscope/mpm/face_flux.hpp"
 #include "meltscope/mpm/temperature_range.hpp"
+#include "meltscope/run/heat_sources.hpp"
 #include "meltscope/run/possible_state.hpp"
+
+#include "quiescence.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -38,9 +40,15 @@ constexpr double least_temperature_slack = 0.01;
 /// capacity there the limit falls by a fifth, and the default cfl stays below it by almost a half.
 void find_extreme_temperatures(Simulation& s) {
     const TemperatureRange range = particle_temperature_range(s.grid, s.particles, s.nodes);
+    require_possible(s, {range.finite, range.coldest, range.hottest});
     s.peak_temperature = range.hottest;
     s.coldest_temperature = range.coldest;
-    require_possible(s, {range.finite, range.coldest, range.hottest});
+    if (!s.quiescence.bricks.awake.empty()) {
+        s.peak_temperature =
+            std::max(s.peak_temperature, up_to_whole_kelvin(s.quiescence.bricks.hottest_asleep));
+        s.coldest_temperature =
+            std::min(s.coldest_temperature, down_to_whole_kelvin(s.quiescence.bricks.coldest_asleep));
+    }
 }
 
 double max_diffusivity(const Simulation& s) {
@@ -77,37 +85,6 @@ StepOptions step_options(const Simulation& s, double dt) {
     return options;
 }
 
-/// Step 5, the lasers' heat: what each surface element absorbs over the step goes to the nodes.
-void deposit_laser_heat(Simulation& s, double dt) {
-    const SurfaceElements& elements = s.surface.elements;
-    std::vector<double> energy(elements.count(), 0.0); // W, then J
-    bool any = false;
-    s.absorption.assign(s.parameters.lasers.size(), {});
-    for (std::size_t l = 0; l < s.parameters.lasers.size(); ++l) {
-        const Laser& laser = s.parameters.lasers[l];
-        double power = 0.0;
-        const BeamPosition beam = beam_now(laser, s.time + 0.5 * dt, power);
-        if (power <= 0.0)
-            continue;
-        const bool at_surface = laser.profile != BeamProfile::volumetric;
-        const Absorption a =
-            at_surface
-                ? absorb(s.light_maps[l], laser, beam.position, power, elements, energy)
-                : deposit_volume(s.grid, s.particles, s.light_maps[l], laser, beam, power, dt, s.nodes);
-        s.absorption[l] = a;
-        s.ledger.emitted += power * dt;
-        s.ledger.absorbed += a.absorbed * dt;
-        s.ledger.missed += a.missed * dt;
-        s.ledger.reflected += (power - a.missed - a.absorbed) * dt;
-        any = any || (at_surface && a.absorbed > 0.0);
-    }
-    if (!any)
-        return;
-    for (double& e : energy)
-        e *= dt;
-    deposit(s.grid, elements, energy, s.nodes);
-}
-
 /// Lowers the least temperature to what the faces and the surroundings can bring about.
 void look_at_surroundings(Simulation& s) {
     for (const FaceCondition& face : s.parameters.boundary) {
@@ -132,59 +109,15 @@ LossOptions loss_options(const PhysicsOptions& physics) {
     return {physics.radiation, physics.evaporation, physics.convection, physics.ambient};
 }
 
-/// Step 5, what the surface loses, and what it takes in again of its own radiation. After all other heat,
-/// because the losses are implicit in the temperature that the step leads to.
-void deposit_losses(Simulation& s, double dt) {
-    if (s.loss_laws.empty())
-        return;
-    const SurfaceElements& elements = s.surface.elements;
-    std::vector<double> temperature, gain;
-    surface_temperatures(s.grid, elements, s.nodes, temperature);
-    std::vector<double> energy(elements.count(), 0.0); // J
-    if (s.exchange) {
-        const double power =
-            reabsorbed_power(*s.exchange, elements, temperature, s.parameters.physics.ambient, energy);
-        for (double& e : energy)
-            e *= dt;
-        deposit(s.grid, elements, energy, s.nodes);
-        s.ledger.radiated -= power * dt;
-        std::fill(energy.begin(), energy.end(), 0.0);
-    }
-    surface_gains(s.grid, s.parameters.boundary, elements, s.loss_elements, s.nodes, gain);
-    const LossEnergy lost =
-        lose_heat(s.loss_laws, s.eos, elements, s.loss_elements, temperature, gain, dt, energy);
-    deposit(s.grid, elements, energy, s.nodes);
-    s.ledger.radiated += lost.radiated;
-    s.ledger.convected += lost.convected;
-    s.ledger.evaporated += lost.evaporated;
-}
-
-/// Step 5, faces of the box that convect or have a flux set.
-void deposit_face_heat(Simulation& s, double dt) {
-    const auto through = [](const FaceCondition& face) {
-        return face.kind == FaceCondition::Kind::convection || face.kind == FaceCondition::Kind::fixed_flux;
-    };
-    const Boundary& boundary = s.parameters.boundary;
-    if (std::none_of(boundary.begin(), boundary.end(), through))
-        return;
-    const std::array<double, 6> in = deposit_face_fluxes(s.grid, boundary, s.eos, dt, s.nodes);
-    for (int f = 0; f < 6; ++f) {
-        if (boundary[f].kind == FaceCondition::Kind::convection)
-            s.ledger.convected -= in[f];
-        else
-            s.ledger.face_flux_in += in[f];
-    }
-}
-
-void make_losses(Simulation& s) {
+/// `nodes` count all particles, whether they are awake or not.
+void make_losses(Simulation& s, const Nodes& nodes) {
     const PhysicsOptions& physics = s.parameters.physics;
     s.loss_laws.clear();
     s.exchange.reset();
     if (!loss_options(physics).any())
         return;
     s.loss_laws = make_loss_laws(s.parameters.materials, loss_options(physics));
-    s.loss_elements =
-        make_loss_elements(s.grid, s.parameters.boundary, s.particles, s.surface.elements, s.nodes);
+    s.loss_elements = make_loss_elements(s.grid, s.parameters.boundary, s.surface.elements, nodes);
     if (physics.reabsorption)
         s.exchange = make_radiative_exchange(s.grid, s.surface, s.particles, s.parameters.materials, {});
 }
@@ -212,17 +145,20 @@ void look_at_powder(Simulation& s) {
     }
 }
 
-/// Makes what follows from the particles' places: node masses, free surface, light maps.
+/// Makes what follows from the particles' places: node masses, free surface, light maps. All particles are
+/// awake then.
 void make_derived(Simulation& s) {
     const auto begin = std::chrono::steady_clock::now();
     look_at_powder(s);
+    s.particles.awake = all_groups(s.particles.layout);
+    s.quiescence = {};
     s.nodes = make_nodes(s.grid, s.particles, int(s.eos.size()), s.parameters.boundary);
     s.surface = find_free_surface(s.grid, s.particles, s.nodes, s.parameters.level_set,
                                   s.parameters.physics.deposit_at_surface);
     s.light_maps.clear();
     for (const Laser& laser : s.parameters.lasers)
         s.light_maps.push_back(make_light_map(s.grid, s.surface, laser.direction));
-    make_losses(s);
+    make_losses(s, s.nodes);
     look_at_surroundings(s);
     s.seconds_in_level_set += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -230,6 +166,18 @@ void make_derived(Simulation& s) {
 void find_node_state(Simulation& s) {
     favre_mean(s.grid, s.eos, s.parameters.boundary, s.nodes);
     find_extreme_temperatures(s);
+}
+
+/// Makes everything anew from the particles and the mass-energies as far as they were awake.
+void make_derived_again(Simulation& s, Field mass_energy, std::vector<char> awake) {
+    make_derived(s);
+    s.nodes.mass_energy = std::move(mass_energy);
+    if (!awake.empty()) {
+        // Nodes that only sleeping particles reach get their temperature for good.
+        favre_mean(s.grid, s.eos, s.parameters.boundary, s.nodes);
+        go_on_asleep(s, std::move(awake));
+    }
+    find_node_state(s);
 }
 
 Simulation set_up(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice) {
@@ -259,21 +207,29 @@ BeamPosition beam_now(const Laser& laser, double time, double& power) {
 
 Simulation make_simulation(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice) {
     Simulation s = set_up(std::move(parameters), grid, std::move(particles), lattice);
-    particles_to_grid(s.grid, s.particles, nullptr, s.nodes); // 3
-    find_node_state(s);                                       // 4
+    particles_to_grid(s.grid, s.particles, nullptr, s.nodes);  // 3
+    favre_mean(s.grid, s.eos, s.parameters.boundary, s.nodes); // 4
+    fall_asleep(s);
+    find_extreme_temperatures(s);
     s.ledger.stored_at_start = s.ledger.stored = total_energy(s.particles);
     return s;
 }
 
 Simulation resume_simulation(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice,
                              double time, std::int64_t step, double dt, const Ledger& ledger,
-                             const Field& mass_energy, double least_temperature) {
+                             const Field& mass_energy, double least_temperature, std::vector<char> awake) {
     Simulation s = set_up(std::move(parameters), grid, std::move(particles), lattice);
     if (std::int64_t(mass_energy.size()) != grid.size)
         throw std::invalid_argument("the saved mass-energy does not fit the grid");
+    if (!awake.empty() && std::int64_t(awake.size()) != brick_counts(grid).prod())
+        throw std::invalid_argument("the saved bricks that are awake do not fit the grid");
     s.nodes.mass_energy = mass_energy;
     s.least_temperature = least_temperature;
     look_at_surroundings(s);
+    if (!awake.empty()) {
+        favre_mean(s.grid, s.eos, s.parameters.boundary, s.nodes);
+        go_on_asleep(s, std::move(awake));
+    }
     find_node_state(s);
     s.time = time;
     s.step = step;
@@ -313,6 +269,7 @@ void advance(Simulation& s, double target) {
     if (steps_left == 1.0)
         s.limit = StepLimit::landing;
     const StepOptions options = step_options(s, dt);
+    wake_for_step(s, dt);
 
     // e^n -> e^{n+1}. Steps 1 and 2 stand while the particles do; 3 and 4 were done at the end of the last
     // step.
@@ -330,16 +287,21 @@ void advance(Simulation& s, double target) {
 }
 
 void update_geometry(Simulation& s) {
-    const Field mass_energy = s.nodes.mass_energy;
-    make_derived(s);
-    s.nodes.mass_energy = mass_energy;
-    find_node_state(s);
+    make_derived_again(s, s.nodes.mass_energy, s.quiescence.bricks.awake);
 }
 
 void update_losses(Simulation& s) {
     make_loss_laws(s.parameters.materials,
                    loss_options(s.parameters.physics)); // throws before anything changes
-    make_losses(s);
+    s.quiescence.looked_with = -1.0;
+    if (s.quiescence.bricks.awake.empty()) {
+        make_losses(s, s.nodes);
+    } else {
+        const GroupRuns awake = std::exchange(s.particles.awake, all_groups(s.particles.layout));
+        make_losses(s, make_nodes(s.grid, s.particles, int(s.eos.size()), s.parameters.boundary));
+        s.particles.awake = awake;
+        find_elements_awake(s);
+    }
     look_at_surroundings(s);
 }
 
@@ -349,12 +311,25 @@ void update_boundary(Simulation& s) {
     for (std::size_t a = 0; a < energy.size(); ++a)
         for (std::int64_t i = 0; i < s.grid.size; ++i)
             energy[a][i] = s.eos[a].energy(s.nodes.temperature[i]);
+    std::vector<char> awake = s.quiescence.bricks.awake;
     make_derived(s);
     particles_to_grid(s.grid, s.particles, &energy, s.nodes);
+    if (!awake.empty()) {
+        favre_mean(s.grid, s.eos, s.parameters.boundary, s.nodes);
+        go_on_asleep(s, std::move(awake));
+        Field of_awake(s.grid.size, 0.0);
+        add_node_energy(s.grid, s.particles, s.particles.awake, &energy, of_awake);
+        fold_ghosts(s.grid, s.parameters.boundary, AtFixedFaces::leave, of_awake);
+        for (std::int64_t i = 0; i < s.grid.size; ++i)
+            if (s.nodes.mass[i] > 0.0)
+                s.nodes.mass_energy[i] = of_awake[i];
+    }
     find_node_state(s);
 }
 
 void add_particles(Simulation& s, const ParticleList& more) {
+    // Where they come, all are awake: the nodes there hold the energy of all.
+    std::vector<char> awake = wake_around(s, more.position);
     Field mass_energy = s.nodes.mass_energy;
     // What the new ones bring to the nodes is added to what the old ones have gathered there.
     const Particles added = make_particles(s.grid, more, s.particles.lattice);
@@ -380,9 +355,16 @@ void add_particles(Simulation& s, const ParticleList& more) {
         all.powder.resize(all.id.size(), 0);
     }
     s.particles = make_particles(s.grid, std::move(all), s.particles.lattice);
-    make_derived(s);
-    s.nodes.mass_energy = std::move(mass_energy);
-    find_node_state(s);
+    make_derived_again(s, std::move(mass_energy), std::move(awake));
+}
+
+Field node_masses(const Simulation& s) {
+    if (s.quiescence.bricks.awake.empty())
+        return s.nodes.mass;
+    Field mass(s.grid.size, 0.0);
+    add_node_mass(s.grid, s.particles, all_groups(s.particles.layout), -1, mass);
+    fold_ghosts(s.grid, s.parameters.boundary, AtFixedFaces::leave, mass);
+    return mass;
 }
 
 void balance(Simulation& s) {

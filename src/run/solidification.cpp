@@ -73,13 +73,19 @@ SolidifiedPoint solidified(const Simulation& s, const Solidification& record, co
     return point;
 }
 
-/// Looks at one row of nodes; what solidified goes to `points`. Returns by how much more nodes are molten.
-std::int64_t look_at_row(const Simulation& s, Solidification& record, std::int64_t j, std::int64_t k,
-                         std::vector<SolidifiedPoint>& points) {
+/// Looks at some nodes of a row; what solidified goes to `points`. Returns by how much more nodes are molten.
+std::int64_t look_at_span(const Simulation& s, Solidification& record, const NodeSpan& span,
+                          std::vector<SolidifiedPoint>& points) {
+    const Grid& grid = s.grid;
+    const std::int64_t j = span.begin % grid.stride_z / grid.stride_y - 1, k = span.begin / grid.stride_z - 1;
+    if (j < 0 || j > grid.cells[1] || k < 0 || k > grid.cells[2])
+        return 0; // ghosts
+    const std::int64_t row = grid.index(0, j, k);
+    const std::int64_t last = std::min(span.end - 1 - row, grid.cells[0]);
     const bool one_material = !s.nodes.several_materials();
     std::int64_t more = 0;
-    for (std::int64_t i = 0; i <= s.grid.cells[0]; ++i) {
-        const std::int64_t at = s.grid.index(i, j, k);
+    for (std::int64_t i = std::max<std::int64_t>(span.begin - row, 0); i <= last; ++i) {
+        const std::int64_t at = row + i;
         const double liquidus = one_material ? s.eos[0].liquidus : liquidus_at(s, at);
         const bool was_molten = record.melted_at[at] >= 0.0;
         const bool is_hot = s.nodes.temperature[at] >= liquidus;
@@ -108,9 +114,8 @@ Solidification begin_solidification(const Simulation& s) {
     record.previous = s.nodes.temperature;
     record.previous_time = s.time;
     std::vector<SolidifiedPoint> none;
-    for (std::int64_t k = 0; k <= s.grid.cells[2]; ++k)
-        for (std::int64_t j = 0; j <= s.grid.cells[1]; ++j)
-            record.molten += look_at_row(s, record, j, k, none);
+    for (const NodeSpan& span : s.nodes.spans)
+        record.molten += look_at_span(s, record, span, none);
     return record;
 }
 
@@ -130,18 +135,19 @@ Solidification resume_solidification(const Simulation& s, Field melted_at,
 
 void record_solidification(const Simulation& s, Solidification& record) {
     if (record.molten > 0 || s.peak_temperature >= lowest_liquidus(s.eos)) {
-        // A list a plane, then the planes in order: the same for any number of threads.
-        std::vector<std::vector<SolidifiedPoint>> points(s.grid.cells[2] + 1);
+        // A list a span, then these in order: the same for any number of threads.
+        std::vector<std::vector<SolidifiedPoint>> points(s.nodes.spans.size());
         std::int64_t more = 0;
 #pragma omp parallel for schedule(static) reduction(+ : more)
-        for (std::int64_t k = 0; k <= s.grid.cells[2]; ++k)
-            for (std::int64_t j = 0; j <= s.grid.cells[1]; ++j)
-                more += look_at_row(s, record, j, k, points[k]);
+        for (std::size_t n = 0; n < points.size(); ++n)
+            more += look_at_span(s, record, s.nodes.spans[n], points[n]);
         record.molten += more;
-        for (const auto& of_plane : points)
-            record.points.insert(record.points.end(), of_plane.begin(), of_plane.end());
+        for (const auto& of_span : points)
+            record.points.insert(record.points.end(), of_span.begin(), of_span.end());
     }
-    record.previous = s.nodes.temperature;
+    // Elsewhere nothing has changed.
+    for_each_node_lanes(s.nodes.spans,
+                        [&](std::int64_t i) { store(load(&s.nodes.temperature[i]), &record.previous[i]); });
     record.previous_time = s.time;
 }
 

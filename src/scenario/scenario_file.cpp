@@ -17,7 +17,7 @@ constexpr double most_outputs = 999999.0; // names of files carry six digits
 PhysicsSpec read_physics(const Section& root) {
     const Section section =
         root.section("physics", {"diffusion", "transfer", "deposit", "blend_time", "radiation", "evaporation",
-                                 "reabsorption", "convection", "ambient"});
+                                 "reabsorption", "convection", "ambient", "quiescent_tolerance"});
     PhysicsSpec physics;
     physics.diffusion = section.choice("diffusion", words::diffusion, physics.diffusion);
     physics.transfer = section.choice("transfer", words::transfer, physics.transfer);
@@ -36,6 +36,9 @@ PhysicsSpec read_physics(const Section& root) {
                                           physics.convection);
     physics.ambient =
         section.above("ambient", quantity::temperature, 0.0, highest_temperature, physics.ambient);
+    physics.quiescent_tolerance =
+        section.in_range("quiescent_tolerance", quantity::temperature_difference, 0.0,
+                         highest_quiescent_tolerance, physics.quiescent_tolerance);
     return physics;
 }
 

@@ -103,6 +103,7 @@ RunParameters run_parameters(const Scenario& scenario) {
     p.physics.reabsorption = scenario.physics.reabsorption;
     p.physics.convection = scenario.physics.convection;
     p.physics.ambient = scenario.physics.ambient;
+    p.physics.quiescent_tolerance = scenario.physics.quiescent_tolerance;
     p.level_set = {scenario.level_set.radius, scenario.level_set.epsilon};
     p.time = {scenario.time.end, scenario.time.cfl, scenario.time.max_step};
     p.isotherms = scenario.output.isotherms;

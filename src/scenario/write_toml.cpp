@@ -214,6 +214,7 @@ void write_physics(Writer& writer, const PhysicsSpec& physics) {
     writer.put("reabsorption", physics.reabsorption);
     writer.put("convection", physics.convection);
     writer.put("ambient", physics.ambient);
+    writer.put("quiescent_tolerance", physics.quiescent_tolerance);
 }
 
 void write_output(Writer& writer, const OutputSpec& output) {

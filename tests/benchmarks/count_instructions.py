@@ -19,7 +19,7 @@ ALLOWED = 0.02
 FORMS = ("affine", "flip")
 KERNELS = (
     "diffuse", "update_grid_energy", "grid_to_particles_to_grid", "favre_mean", "particles_to_grid",
-    "absorb", "deposit", "surface_temperatures", "surface_gains", "lose_heat",
+    "absorb", "deposit", "deposit_losses",
     "signed_distance", "find_free_surface", "make_light_map", "make_lane_layout", "make_nodes", "fill_scenario",
 )
 

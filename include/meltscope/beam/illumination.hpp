@@ -18,6 +18,8 @@ struct LightMap {
     std::vector<double>
         depth; ///< m along the beam from the corner's plane to the first interface; infinite: none
     std::vector<char> lit; ///< of each surface element: nothing lies between it and the source
+    std::vector<std::int64_t> lit_in_rows; ///< the lit elements, row of cells (along u) after row
+    std::vector<std::int64_t> row_start;   ///< first entry of each row, count_v of them, and the end
 };
 
 /// Traces a ray through the level set for every half cell across the beam.
@@ -31,10 +33,10 @@ struct Absorption {
     double scale = 1.0;  ///< factor that made the sum over the elements exact
 };
 
-/// Adds the power in W that each surface element absorbs from `laser`, its axis through `position`, emitting
+/// Finds the power in W that surface elements absorb from `laser`, its axis through `position`, emitting
 /// `power` W: absorptivity I(x_s) max(0, -d . n) a, where lit, scaled so that the sum is Absorption::absorbed
 /// exactly.
 Absorption absorb(const LightMap& map, const Laser& laser, const Vec3& position, double power,
-                  const SurfaceElements& elements, std::vector<double>& element_power);
+                  const SurfaceElements& elements, ElementHeat& absorbed);
 
 } // namespace meltscope

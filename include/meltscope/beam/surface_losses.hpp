@@ -51,25 +51,6 @@ std::vector<LossLaw> make_loss_laws(const std::vector<Material>& materials, cons
 ///                temperature only.
 LossFlux loss_flux(const LossLaw& law, double temperature);
 
-/// What a surface element may draw on. Stands as long as the geometry.
-struct LossElements {
-    std::vector<std::int16_t> material; ///< of the element's particle
-    std::vector<double> mass;           ///< kg, see make_loss_elements
-    std::vector<std::int64_t> near;     ///< nodes with mass that the elements reach, ascending
-    Field gain;                         ///< J/kg, nodal, for surface_gains
-};
-
-/// The mass M_s that an element stands for: heat spread evenly over the surface, q a_s an element, raises the
-/// specific energy at x_s by q a_s/M_s. With w_is = N_i(x_s)/sum_j N_j(x_s),
-///   a_s/M_s = sum_i w_is (sum_q w_iq a_q) / m_i.
-LossElements make_loss_elements(const Grid& grid, const Boundary& boundary, const Particles& particles,
-                                const SurfaceElements& elements, const Nodes& nodes);
-
-/// Specific energy in J/kg that each element is about to gain from what D_i holds already: sum_i w_is
-/// D_i/m_i. Folds the ghosts of D_i beyond faces that do not fix the temperature.
-void surface_gains(const Grid& grid, const Boundary& boundary, const SurfaceElements& elements,
-                   LossElements& loss, Nodes& nodes, std::vector<double>& gain);
-
 /// What the surface loses over a step, J.
 struct LossEnergy {
     double radiated = 0.0;
@@ -79,18 +60,36 @@ struct LossEnergy {
     double total() const { return radiated + convected + evaporated; }
 };
 
-/// Step 5, losses: takes what each element loses in `dt` (s) from `energy` (J), for deposit(). `temperature`
-/// in K and `gain` in J/kg (empty: none) are those of surface_temperatures and surface_gains, the latter
-/// after all other heat of the step has been deposited.
+/// What a surface element of area a (m^2) that stands for the mass M (kg) loses in `dt` (s); T in K, and
+/// `gain` in J/kg is what else it is about to take in.
 ///
 /// Implicit: the flux is that at the temperature T' at which the element ends,
-///   e(T') = e(T) + gain - q(T') a dt/M_s.
+///   e(T') = e(T) + gain - q(T') a dt/M.
 /// So a loss never takes an element beyond the ambient temperature, however large the step, and a steady
 /// state, where gain and loss cancel, has the flux q(T) whatever the step. The radiative flux is q = s (T' -
 /// T_amb) with the s = emissivity sigma (T^2 + T_amb^2)(T + T_amb) of the step's start.
-LossEnergy lose_heat(std::span<const LossLaw> laws, const std::vector<EquationOfState>& eos,
-                     const SurfaceElements& elements, const LossElements& loss,
-                     std::span<const double> temperature, std::span<const double> gain, double dt,
-                     std::span<double> energy);
+LossEnergy element_loss(const LossLaw& law, const EquationOfState& eos, double area, double mass,
+                        double temperature, double gain, double dt);
+
+/// What the surface elements may draw on. Stands as long as the geometry.
+struct LossElements {
+    Field area, mass;               ///< a_s in m^2 and M_s in kg, in the layout's order; padding has no area
+    std::vector<std::int64_t> near; ///< nodes with mass that the elements reach, ascending
+    Field gain;                     ///< J/kg, nodal: D_i/m_i of the step under way
+    std::vector<char> awake;        ///< lane groups that lose heat; empty: all
+};
+
+/// The mass M_s that an element stands for: heat spread evenly over the surface, q a_s an element, raises the
+/// specific energy at x_s by q a_s/M_s. With w_is = N_i(x_s)/sum_j N_j(x_s),
+///   a_s/M_s = sum_i w_is (sum_q w_iq a_q) / m_i.
+LossElements make_loss_elements(const Grid& grid, const Boundary& boundary, const SurfaceElements& elements,
+                                const Nodes& nodes);
+
+/// Step 5, losses: takes from D_i what the elements lose in `dt` (s), each at T = sum_i w_is T_i with the
+/// gain sum_i w_is D_i/m_i. After all other heat of the step has been deposited; folds the ghosts of D_i
+/// beyond faces that do not fix the temperature. Each element's law is that of its material.
+LossEnergy deposit_losses(const Grid& grid, const Boundary& boundary, std::span<const LossLaw> laws,
+                          const std::vector<EquationOfState>& eos, const SurfaceElements& elements, double dt,
+                          LossElements& loss, Nodes& nodes);
 
 } // namespace meltscope

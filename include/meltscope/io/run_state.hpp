@@ -16,7 +16,7 @@ Ledger ledger_from_entries(const std::vector<std::pair<std::string, double>>& en
 
 /// All that a checkpoint holds of a run; `scenario` is the resolved scenario as TOML.
 /// /grid/mass_energy holds the nodes with their ghosts, cells + 3 along each axis, without the padding that
-/// depends on the SIMD width.
+/// depends on the SIMD width; /grid/awake says which bricks of bins take part in the step, if not all do.
 CheckpointData checkpoint_of(const Run& run, const std::string& scenario);
 
 /// The simulation that a checkpoint holds, under `parameters`. The grid is that of the scenario. Throws

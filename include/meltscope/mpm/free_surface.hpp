@@ -15,11 +15,17 @@ struct SurfaceElements {
     std::vector<Vec3> normal;           ///< n_p, unit, out of the material
     std::vector<double> area;           ///< a_p, m^2
 
-    LaneLayout layout;                  ///< of the points where the heat goes in
+    LaneLayout layout; ///< of the points where the heat goes in; the kind of a group is its material
     Field offset_x, offset_y, offset_z; ///< layout order, in cells
     Field normalization;                ///< layout order: 1 / (sum of N_i over nodes with mass)
 
     std::int64_t count() const { return std::int64_t(particle.size()); }
+};
+
+/// Heat of some of the elements.
+struct ElementHeat {
+    std::vector<std::int64_t> element; ///< each at most once
+    std::vector<double> amount;        ///< W or J
 };
 
 /// Steps 1 and 2 and what follows from them; stands as long as the particles do.
@@ -41,6 +47,9 @@ FreeSurface find_free_surface(const Grid& grid, const Particles& particles, cons
 /// Step 5, surface terms: D_i += energy_s N_i(x_s) / sum_j N_j(x_s), nodes without mass left out.
 /// `energy`: J a surface element, one by one.
 void deposit(const Grid& grid, const SurfaceElements& elements, std::span<const double> energy, Nodes& nodes);
+
+/// The same for some of the elements, J.
+void deposit(const Grid& grid, const SurfaceElements& elements, const ElementHeat& energy, Nodes& nodes);
 
 /// Interpolates a nodal field, its ghosts set, to each surface element, one by one: with the weights of
 /// deposit().

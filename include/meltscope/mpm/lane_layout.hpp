@@ -39,6 +39,16 @@ struct LaneLayout {
     std::int64_t size() const { return slots * lane_count; } ///< entries of a per-point array in this layout
 };
 
+/// Some of the groups of a layout, in its order.
+struct GroupRuns {
+    std::vector<LaneBlock> runs;              ///< groups that follow on each other in a block
+    std::vector<std::int64_t> block_start;    ///< first run of each block that has any, and the end
+    std::array<std::int64_t, 5> colour_start; ///< first block of each colour, and the end
+};
+
+/// All groups.
+GroupRuns all_groups(const LaneLayout& layout);
+
 /// Where a point lies in its bin.
 struct BinPlace {
     std::array<std::int32_t, 3> node; ///< nearest node
@@ -65,6 +75,18 @@ void for_each_block(const LaneLayout& layout, Work work) {
 #pragma omp for schedule(dynamic, 1)
         for (std::int64_t b = layout.colour_start[colour]; b < layout.colour_start[colour + 1]; ++b)
             work(layout.blocks[b]);
+    }
+}
+
+/// The same for some of the groups: calls `work(run)` for every run.
+template <class Work>
+void for_each_block(const GroupRuns& groups, Work work) {
+#pragma omp parallel
+    for (int colour = 0; colour < 4; ++colour) {
+#pragma omp for schedule(dynamic, 1)
+        for (std::int64_t b = groups.colour_start[colour]; b < groups.colour_start[colour + 1]; ++b)
+            for (std::int64_t r = groups.block_start[b]; r < groups.block_start[b + 1]; ++r)
+                work(groups.runs[r]);
     }
 }
 

@@ -10,12 +10,22 @@
 
 namespace meltscope {
 
+/// Entries begin .. end of the nodal fields, in one row along x; multiples of lane_count.
+struct NodeSpan {
+    std::int64_t begin, end;
+};
+
 /// Nodal fields of the step, all grid.size long.
 ///
 /// A node has one temperature. With several materials its energy is shared out so that all are at that
 /// temperature: sum_A m_iA e_A(T_i) = (m e)_i, which for constant heat capacities is their capacity-weighted
 /// mean temperature and conserves energy exactly. So specific energies are kept a field a material.
+///
+/// Masses count the particles that are awake. A node that only sleeping ones reach has none; it keeps its
+/// temperature and its (m e)_i, of all particles there, until it gets mass.
 struct Nodes {
+    std::vector<NodeSpan> spans; ///< hold all nodes with mass; what the loops over nodes run through
+
     Boundary boundary;         ///< that ghosts are folded and mirrored by
     Field mass;                ///< m_i, kg; ghosts beyond faces that do not fix the temperature are folded in
     Field inertia;             ///< m_i with all ghosts folded in; empty unless a face fixes the temperature
@@ -31,8 +41,32 @@ struct Nodes {
     bool several_materials() const { return !material_mass.empty(); }
 };
 
+/// All rows.
+std::vector<NodeSpan> all_nodes(const Grid& grid);
+
+/// Calls `work(i)` for every lane group i .. i + lane_count - 1 of the spans.
+template <class Work>
+void for_each_node_lanes(const std::vector<NodeSpan>& spans, Work work) {
+#pragma omp parallel for schedule(static)
+    for (std::size_t n = 0; n < spans.size(); ++n)
+        for (std::int64_t i = spans[n].begin; i < spans[n].end; i += lane_count)
+            work(i);
+}
+
 /// Node masses and all else that follows from where the particles are. Mass-energies are zero afterwards.
 Nodes make_nodes(const Grid& grid, const Particles& particles, int materials, const Boundary& boundary);
+
+/// The masses alone, of the particles that are awake.
+void find_node_masses(const Grid& grid, const Particles& particles, const Boundary& boundary, Nodes& nodes);
+
+/// Adds sum_p N_ip m_p over the particles of `groups`, of one material or of all (-1), to `mass`.
+void add_node_mass(const Grid& grid, const Particles& particles, const GroupRuns& groups, int material,
+                   Field& mass);
+
+/// Adds sum_p N_ip m_p (e_p + g_p . (x_i - x_p)) over the particles of `groups` to `mass_energy`; see
+/// particles_to_grid.
+void add_node_energy(const Grid& grid, const Particles& particles, const GroupRuns& groups,
+                     const std::vector<Field>* gradient_of, Field& mass_energy);
 
 /// Step 3, P2G: (m e)_i = sum_p N_ip m_p (e_p + g_p . (x_i - x_p)), g_p = sum_i e_i grad N_ip of
 /// `gradient_of`, a field a material; without it g_p = 0. Used where step 7's fused pass has not done it: at
@@ -40,8 +74,13 @@ Nodes make_nodes(const Grid& grid, const Particles& particles, int materials, co
 void particles_to_grid(const Grid& grid, const Particles& particles, const std::vector<Field>* gradient_of,
                        Nodes& nodes);
 
-/// Step 4, Favre mean: e_i = (m e)_i / m_i and T_i = T(e_i); faces of fixed temperature get theirs, ghosts
-/// follow. A node without mass has e = T = 0 and gives nothing.
+/// Step 4, Favre mean: e_i = (m e)_i / m_i and T_i = T(e_i) in `spans`; faces of fixed temperature get
+/// theirs, ghosts follow. A node without mass keeps its temperature, which is zero where no particle ever
+/// was.
+void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
+                const std::vector<NodeSpan>& spans, Nodes& nodes);
+
+/// The same for all nodes with mass.
 void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials, const Boundary& boundary,
                 Nodes& nodes);
 

@@ -30,6 +30,7 @@ struct Particles {
     std::vector<std::int16_t> material; ///< one by one
 
     LaneLayout layout;
+    GroupRuns awake;                    ///< the groups that take part in the step
     int lattice = 0;                    ///< points a cell along an axis of the lattice groups
     Field offset_x, offset_y, offset_z; ///< x_p from the bin's node, in cells
     Field mass;                         ///< m_p, kg

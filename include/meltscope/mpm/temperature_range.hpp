@@ -2,8 +2,6 @@
 
 #include "meltscope/mpm/nodes.hpp"
 
-#include <cstdint>
-
 namespace meltscope {
 
 /// What the particles see of the nodes' temperatures.
@@ -12,7 +10,11 @@ struct TemperatureRange {
     bool finite = true;                  ///< no node that they see holds what is not a number
 };
 
-/// The range of sum_i T_i N_ip over the particles.
+/// Rounds a temperature in K outwards.
+double down_to_whole_kelvin(double t);
+double up_to_whole_kelvin(double t);
+
+/// The range of sum_i T_i N_ip over the particles that are awake.
 ///
 /// A node that hangs on the edge of a few particles extrapolates and may be far hotter or colder than they
 /// are. A particle's temperature is a weighted mean of those of its 27 nodes, so these bound it: only the few

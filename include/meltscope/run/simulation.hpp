@@ -4,6 +4,7 @@
 #include "meltscope/beam/radiative_exchange.hpp"
 #include "meltscope/beam/surface_losses.hpp"
 #include "meltscope/material/equation_of_state.hpp"
+#include "meltscope/mpm/awake_bricks.hpp"
 #include "meltscope/mpm/free_surface.hpp"
 #include "meltscope/mpm/thermal_step.hpp"
 #include "meltscope/run/ledger.hpp"
@@ -13,6 +14,9 @@
 #include <vector>
 
 namespace meltscope {
+
+/// K; a larger tolerance for what is quiescent would be no error but a slip.
+inline constexpr double highest_quiescent_tolerance = 10.0;
 
 /// Which numerical forms and physical effects are on. Steerable between steps, but for transfer and deposit.
 struct PhysicsOptions {
@@ -26,6 +30,8 @@ struct PhysicsOptions {
     bool reabsorption = false;
     double convection = 0.0; ///< W/m^2/K, h of the free surface; zero: none
     double ambient = 298.15; ///< K
+    /// K: where all is still at its start temperature within this, no work is done; 0: work everywhere
+    double quiescent_tolerance = 1e-6;
 };
 
 /// How time advances.
@@ -50,9 +56,16 @@ struct RunParameters {
 /// What ruled the size of a step.
 enum class StepLimit { diffusion, beam, max_step, landing };
 
+/// What sleeps because it is still at its start temperature.
+struct Quiescence {
+    Bricks bricks;                ///< no bricks: nothing sleeps
+    std::vector<char> at_surface; ///< of each brick: it shares nodes with surface elements
+    double looked_with = -1.0;    ///< K: with this tolerance all that sleeps has been found quiet
+};
+
 /// A run in progress: given parameters, state, and what is derived from both. The state proper is time, step,
 /// ledger, particles, the nodes' mass-energy (m e)_i, which carries what step 3 has gathered for the next
-/// step, and the least temperature.
+/// step, the least temperature and which bricks are awake.
 struct Simulation {
     RunParameters parameters;
     Grid grid;
@@ -67,6 +80,7 @@ struct Simulation {
     /// K, than which nothing in the run so far makes the material colder: of what it started with, of what
     /// was added, of the faces and of the surroundings. 0 once a face has drawn heat off at a fixed flux.
     double least_temperature = 0.0;
+    Quiescence quiescence;
 
     // Derived from the parameters and the particles' places; made anew when these change.
     std::vector<EquationOfState> eos;
@@ -91,10 +105,12 @@ struct Simulation {
 Simulation make_simulation(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice);
 
 /// Goes on from a saved state: as make_simulation, then time, step, dt, ledger, the mass-energy of the nodes
-/// (grid.size doubles as saved from nodes.mass_energy) and the least temperature are put back.
+/// (grid.size doubles as saved from nodes.mass_energy) and the least temperature are put back. `awake`: as
+/// saved from quiescence.bricks.awake; empty if all were.
 Simulation resume_simulation(RunParameters parameters, const Grid& grid, ParticleList particles, int lattice,
                              double time, std::int64_t step, double dt, const Ledger& ledger,
-                             const Field& mass_energy, double least_temperature);
+                             const Field& mass_energy, double least_temperature,
+                             std::vector<char> awake = {});
 
 /// The largest step that is stable and follows the beams, s, and which limit rules.
 double largest_step(const Simulation& simulation, StepLimit& limit);
@@ -124,6 +140,9 @@ void balance(Simulation& simulation);
 /// Largest difference, K, between the temperature of a particle's own energy and that interpolated from the
 /// nodes.
 double energy_spread(const Simulation& simulation);
+
+/// The nodes' masses in kg, of all particles whether they are awake or not.
+Field node_masses(const Simulation& simulation);
 
 /// Power in W that a laser emits at a time, and where its beam is.
 BeamPosition beam_now(const Laser& laser, double time, double& power);

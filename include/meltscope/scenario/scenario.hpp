@@ -74,9 +74,10 @@ struct PhysicsSpec {
     std::optional<double> blend_time; ///< s, tau of b = min(1, dt/tau); by default the solver's choice
     bool radiation = false;
     bool evaporation = false;
-    bool reabsorption = false; ///< of radiation by surfaces that see each other; needs radiation
-    double convection = 0.0;   ///< W/m^2/K, heat transfer coefficient of the free surface
-    double ambient = 298.15;   ///< K, of the surroundings
+    bool reabsorption = false;         ///< of radiation by surfaces that see each other; needs radiation
+    double convection = 0.0;           ///< W/m^2/K, heat transfer coefficient of the free surface
+    double ambient = 298.15;           ///< K, of the surroundings
+    double quiescent_tolerance = 1e-6; ///< K, see PhysicsOptions
 };
 
 struct LevelSetSpec {

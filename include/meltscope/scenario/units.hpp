@@ -19,6 +19,7 @@ inline constexpr Quantity number{"number", "1"};
 inline constexpr Quantity length{"length", "m"};
 inline constexpr Quantity time{"time", "s"};
 inline constexpr Quantity temperature{"temperature", "K"};
+inline constexpr Quantity temperature_difference{"temperature difference", "K"};
 inline constexpr Quantity power{"power", "W"};
 inline constexpr Quantity speed{"speed", "m/s"};
 inline constexpr Quantity angle{"angle", "rad"};

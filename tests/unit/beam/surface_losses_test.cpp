@@ -37,17 +37,13 @@ LossOptions all_losses() {
 /// One step of conduction, of a given energy in J on every element, and of losses. Returns the losses.
 LossEnergy step(LatticeBody& body, const std::vector<LossLaw>& laws, LossElements& loss,
                 double supply_per_area, double dt) {
-    std::vector<double> temperature, gain, energy(body.surface.elements.area);
+    std::vector<double> energy(body.surface.elements.area);
     for (double& e : energy)
         e *= supply_per_area * dt;
     diffuse(body.grid, body.particles, body.eos, body.options, dt, body.nodes);
     deposit(body.grid, body.surface.elements, energy, body.nodes);
-    surface_temperatures(body.grid, body.surface.elements, body.nodes, temperature);
-    surface_gains(body.grid, body.boundary, body.surface.elements, loss, body.nodes, gain);
-    std::fill(energy.begin(), energy.end(), 0.0);
     const LossEnergy lost =
-        lose_heat(laws, body.eos, body.surface.elements, loss, temperature, gain, dt, energy);
-    deposit(body.grid, body.surface.elements, energy, body.nodes);
+        deposit_losses(body.grid, body.boundary, laws, body.eos, body.surface.elements, dt, loss, body.nodes);
     body.finish_step(dt);
     return lost;
 }
@@ -110,8 +106,7 @@ TEST(SurfaceLosses, a_missing_material_key_is_named) {
 TEST(SurfaceLosses, what_is_lost_leaves_the_particles) {
     LatticeBody body = slab(3200.0);
     const std::vector<LossLaw> laws = make_loss_laws(body.materials, all_losses());
-    LossElements loss =
-        make_loss_elements(body.grid, body.boundary, body.particles, body.surface.elements, body.nodes);
+    LossElements loss = make_loss_elements(body.grid, body.boundary, body.surface.elements, body.nodes);
     const double before = total_energy(body.particles);
     double lost = 0.0;
     for (int n = 0; n < 20; ++n)
@@ -123,8 +118,7 @@ TEST(SurfaceLosses, what_is_lost_leaves_the_particles) {
 TEST(SurfaceLosses, a_small_step_loses_flux_times_area_times_time) {
     LatticeBody body = slab(2900.0);
     const std::vector<LossLaw> laws = make_loss_laws(body.materials, all_losses());
-    LossElements loss =
-        make_loss_elements(body.grid, body.boundary, body.particles, body.surface.elements, body.nodes);
+    LossElements loss = make_loss_elements(body.grid, body.boundary, body.surface.elements, body.nodes);
     const double dt = 1e-11;
     const LossEnergy lost = step(body, laws, loss, 0.0, dt);
     const std::vector<double>& areas = body.surface.elements.area;
@@ -138,15 +132,17 @@ TEST(SurfaceLosses, a_small_step_loses_flux_times_area_times_time) {
 
 TEST(SurfaceLosses, an_elements_mass_is_what_an_even_flux_heats) {
     LatticeBody body = slab(300.0);
-    LossElements loss =
-        make_loss_elements(body.grid, body.boundary, body.particles, body.surface.elements, body.nodes);
+    LossElements loss = make_loss_elements(body.grid, body.boundary, body.surface.elements, body.nodes);
     std::vector<double> energy, gain;
     for (const double area : body.surface.elements.area)
         energy.push_back(1e3 * area);
     deposit(body.grid, body.surface.elements, energy, body.nodes);
-    surface_gains(body.grid, body.boundary, body.surface.elements, loss, body.nodes, gain);
+    // Without a law there is no loss, but the nodes' gains are found.
+    deposit_losses(body.grid, body.boundary, std::vector<LossLaw>(1), body.eos, body.surface.elements, 1e-6,
+                   loss, body.nodes);
+    interpolate_to_surface(body.grid, body.surface.elements, loss.gain, gain);
     for (std::size_t s = 0; s < gain.size(); ++s)
-        EXPECT_NEAR(gain[s] * loss.mass[s], energy[s], 1e-12 * energy[s]);
+        EXPECT_NEAR(gain[s] * loss.mass[body.surface.elements.layout.place[s]], energy[s], 1e-12 * energy[s]);
 }
 
 TEST(SurfaceLosses, a_step_of_any_size_never_leads_beyond_ambient) {
@@ -154,8 +150,8 @@ TEST(SurfaceLosses, a_step_of_any_size_never_leads_beyond_ambient) {
         for (const double h : {1e3, 1e9, 1e15}) {
             LatticeBody body = slab(start);
             const std::vector<LossLaw> laws = make_loss_laws(body.materials, only_convection(h, 300.0));
-            LossElements loss = make_loss_elements(body.grid, body.boundary, body.particles,
-                                                   body.surface.elements, body.nodes);
+            LossElements loss =
+                make_loss_elements(body.grid, body.boundary, body.surface.elements, body.nodes);
             for (int n = 0; n < 50; ++n) {
                 step(body, laws, loss, 0.0, 8e-6);
                 for (std::int64_t q = 0; q < body.particles.count(); ++q) {
@@ -173,26 +169,16 @@ TEST(SurfaceLosses, one_implicit_step_converges_to_many_small_explicit_ones) {
     const Material steel = plain_steel();
     const std::vector<EquationOfState> eos{make_equation_of_state(steel)};
     const std::vector<LossLaw> laws = make_loss_laws({steel}, all_losses());
-    SurfaceElements element;
-    element.particle = {0};
-    element.area = {dx * dx};
-    LossElements loss;
-    loss.material = {0};
-    loss.mass = {0.5 * steel.density * dx * dx * dx};
+    const double area = dx * dx, mass = 0.5 * steel.density * dx * dx * dx;
     const double time = 1e-5;
     const auto run = [&](int steps, bool implicit) {
         double e = eos[0].energy(3300.0);
         const double dt = time / steps;
         for (int n = 0; n < steps; ++n) {
             const double t = eos[0].temperature(e);
-            double energy = 0.0;
-            if (implicit) {
-                lose_heat(laws, eos, element, loss, {&t, 1}, {}, dt, {&energy, 1});
-            } else {
-                const LossFlux flux = loss_flux(laws[0], t);
-                energy = -(flux.radiation + flux.evaporation) * element.area[0] * dt;
-            }
-            e += energy / loss.mass[0];
+            const LossFlux flux = loss_flux(laws[0], t);
+            e -= implicit ? element_loss(laws[0], eos[0], area, mass, t, 0.0, dt).total() / mass
+                          : (flux.radiation + flux.evaporation) * area * dt / mass;
         }
         return eos[0].temperature(e);
     };
@@ -203,14 +189,50 @@ TEST(SurfaceLosses, one_implicit_step_converges_to_many_small_explicit_ones) {
     EXPECT_NEAR(error_16 / error_32, 2.0, 0.2) << "first order";
 }
 
+TEST(SurfaceLosses, elements_lose_in_groups_what_each_loses_alone) {
+    // Hot and cold ones side by side: some evaporate, some do not, some only for what they are about to gain.
+    LatticeBody body = slab(300.0, 19);
+    const std::vector<LossLaw> laws = make_loss_laws(body.materials, all_losses());
+    for (std::int64_t q = 0; q < body.particles.count(); ++q) {
+        const double t = 400.0 + 3000.0 * body.particles.position[q].x() / (19.0 * dx);
+        body.particles.specific_energy[body.particles.layout.place[q]] = body.eos[0].energy(t);
+    }
+    particles_to_grid(body.grid, body.particles, nullptr, body.nodes);
+    favre_mean(body.grid, body.eos, body.boundary, body.nodes);
+    const SurfaceElements& elements = body.surface.elements;
+    LossElements loss = make_loss_elements(body.grid, body.boundary, elements, body.nodes);
+    const double dt = 4e-6;
+    std::vector<double> energy(elements.area), temperature, gain;
+    for (double& e : energy)
+        e *= 2e8 * dt;
+    deposit(body.grid, elements, energy, body.nodes);
+    const LossEnergy lost =
+        deposit_losses(body.grid, body.boundary, laws, body.eos, elements, dt, loss, body.nodes);
+
+    surface_temperatures(body.grid, elements, body.nodes, temperature);
+    interpolate_to_surface(body.grid, elements, loss.gain, gain);
+    LossEnergy expected;
+    int evaporating = 0;
+    for (std::int64_t s = 0; s < elements.count(); ++s) {
+        const LossEnergy e = element_loss(laws[0], body.eos[0], elements.area[s],
+                                          loss.mass[elements.layout.place[s]], temperature[s], gain[s], dt);
+        expected.radiated += e.radiated;
+        expected.evaporated += e.evaporated;
+        evaporating += e.evaporated > 0.0;
+    }
+    EXPECT_GT(evaporating, 0);
+    EXPECT_LT(evaporating, elements.count());
+    EXPECT_NEAR(lost.radiated, expected.radiated, 1e-12 * expected.radiated);
+    EXPECT_NEAR(lost.evaporated, expected.evaporated, 1e-12 * expected.evaporated);
+}
+
 TEST(SurfaceLosses, the_steady_temperature_does_not_depend_on_the_step) {
     // As much heat comes as steel at 3200 K evaporates and radiates; the bulk follows until all is at 3200 K.
     const std::vector<LossLaw> laws = make_loss_laws({plain_steel()}, all_losses());
     const LossFlux flux = loss_flux(laws[0], 3200.0);
     for (const double dt : {2e-6, 8e-6}) {
         LatticeBody body = slab(3200.0);
-        LossElements loss =
-            make_loss_elements(body.grid, body.boundary, body.particles, body.surface.elements, body.nodes);
+        LossElements loss = make_loss_elements(body.grid, body.boundary, body.surface.elements, body.nodes);
         for (int n = 0; n < int(4e-4 / dt); ++n)
             step(body, laws, loss, flux.radiation + flux.evaporation, dt);
         EXPECT_NEAR(mean_surface_temperature(body), 3200.0, 0.01) << "dt " << dt;
@@ -221,8 +243,7 @@ TEST(SurfaceLosses, evaporation_holds_the_surface_down_without_ringing) {
     // Far more heat than conduction takes: the stiff balance settles where the flux equals the supply.
     const std::vector<LossLaw> laws = make_loss_laws({plain_steel()}, all_losses());
     LatticeBody body = slab(3000.0);
-    LossElements loss =
-        make_loss_elements(body.grid, body.boundary, body.particles, body.surface.elements, body.nodes);
+    LossElements loss = make_loss_elements(body.grid, body.boundary, body.surface.elements, body.nodes);
     double before = 0.0;
     for (int n = 0; n < 400; ++n) {
         step(body, laws, loss, 5e9, 8e-6);

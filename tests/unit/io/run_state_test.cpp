@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace meltscope;
@@ -32,6 +33,7 @@ Steering weird_steering() {
     steering.lasers[0].spot_radius = 1e-5;
     steering.physics.blend_time = 1e-5 / 3.0;
     steering.physics.radiation = true;
+    steering.physics.quiescent_tolerance = 1e-4 / 3.0;
     steering.time = {2e-3, 0.4, std::nullopt};
     steering.schedule.output.every_steps = 7;
     steering.schedule.picture = Cadence{1e-5, std::nullopt};
@@ -58,6 +60,7 @@ TEST(Steering, reads_back_bit_for_bit) {
     EXPECT_EQ(back.lasers[1].power, 100.0 / 3.0);
     EXPECT_EQ(back.lasers[1].path, steering.lasers[1].path);
     EXPECT_EQ(back.physics.blend_time, steering.physics.blend_time);
+    EXPECT_EQ(back.physics.quiescent_tolerance, steering.physics.quiescent_tolerance);
     EXPECT_FALSE(back.time.max_step.has_value());
     EXPECT_EQ(back.schedule.picture->every, 1e-5);
     EXPECT_EQ(back.boundary[2].coefficient, 12.5);
@@ -100,6 +103,7 @@ TEST(Steering, values_that_no_command_leads_to_are_refused_by_their_key) {
     expect("time.end", [](Steering& s) { s.time.end = 0.0; });
     expect("schedule.every_steps", [](Steering& s) { s.schedule.output.every_steps = 0; });
     expect("schedule.every", [](Steering& s) { s.schedule.picture->every = -1e-5; });
+    expect("physics.quiescent_tolerance", [](Steering& s) { s.physics.quiescent_tolerance = -1e-6; });
     expect("level_set.radius", [](Steering& s) { s.level_set.radius = 1e9; });
 }
 
@@ -137,6 +141,38 @@ TEST(RunState, a_simulation_taken_from_a_checkpoint_goes_on_bit_for_bit) {
     EXPECT_EQ(a.grid[0].values, b.grid[0].values);
     EXPECT_EQ(a.ledger, b.ledger);
     EXPECT_EQ(a.journal, b.journal);
+}
+
+TEST(RunState, a_simulation_of_which_a_part_sleeps_goes_on_bit_for_bit) {
+    RunParameters parameters = block_parameters();
+    parameters.physics.quiescent_tolerance = 1e-6;
+    const Grid grid = block_grid({26, 8, 8});
+    ParticleList list = block_particles(grid, 50e-6, 300.0);
+    for (std::int64_t q = 0; q < list.size(); ++q)
+        if (list.position[q][0] < 20e-6)
+            list.specific_energy[q] *= 2.0;
+    meltscope::Run run, again;
+    run.simulation = make_simulation(parameters, grid, list, 2);
+    advance(run.simulation, 1.0);
+    CheckpointData data = checkpoint_of(run, "");
+    ASSERT_EQ(data.grid.size(), 2u);
+    EXPECT_EQ(data.grid[1].dims, (std::vector<std::uint64_t>{3, 3, 4}));
+    const auto awake = std::count(data.grid[1].values.begin(), data.grid[1].values.end(), 1.0);
+    EXPECT_GT(awake, 0);
+    EXPECT_LT(awake, 4 * 3 * 2);
+
+    again.simulation = simulation_from(data, parameters, grid, 2);
+    EXPECT_EQ(again.simulation.quiescence.bricks.awake, run.simulation.quiescence.bricks.awake);
+    for (int n = 0; n < 20; ++n) {
+        advance(run.simulation, 1.0);
+        advance(again.simulation, 1.0);
+    }
+    const CheckpointData a = checkpoint_of(run, ""), b = checkpoint_of(again, "");
+    EXPECT_EQ(a.particles.specific_energy, b.particles.specific_energy);
+    EXPECT_EQ(a.grid[0].values, b.grid[0].values);
+
+    data.grid[1].values.pop_back();
+    EXPECT_THROW(simulation_from(data, parameters, grid, 2), CheckpointError);
 }
 
 TEST(RunState, the_grid_is_saved_without_padding) {

@@ -127,6 +127,25 @@ TEST(Deposit, what_is_deposited_arrives_exactly) {
     }
 }
 
+TEST(Deposit, heat_of_some_elements_goes_where_it_goes_as_heat_of_all) {
+    for (const std::int64_t every : {3, 50}) { // in turn enough to be laid out over all, and a few
+        Body body = make_body({21, 14, 16}, [](const Vec3& x) { return x[2] < 8.0 + 0.2 * x[0]; });
+        const std::int64_t count = body.surface.elements.count();
+        std::vector<double> all(count, 0.0);
+        ElementHeat some;
+        for (std::int64_t s = 0; s < count; s += every) {
+            all[s] = 1.0 + double(s % 7);
+            some.element.push_back(s);
+            some.amount.push_back(all[s]);
+        }
+        Nodes nodes = body.nodes;
+        deposit(body.grid, body.surface.elements, all, body.nodes);
+        deposit(body.grid, body.surface.elements, some, nodes);
+        for (std::int64_t i = 0; i < body.grid.size; ++i)
+            EXPECT_NEAR(nodes.increment[i], body.nodes.increment[i], 1e-13) << "every " << every;
+    }
+}
+
 TEST(Deposit, surface_temperature_is_that_of_the_nodes_below) {
     Body body = make_body({8, 8, 14}, [](const Vec3& x) { return x[2] < 6.5; });
     for (std::int64_t k = 0; k <= 14; ++k)
@@ -146,17 +165,17 @@ TEST(Illumination, tilted_plate_absorbs_the_whole_beam_with_a_scale_near_one) {
         const Body body = tilted_plate(degrees);
         const LightMap map = make_light_map(body.grid, body.surface, Vec3(0, 0, -1));
         const Laser laser = beam(6.0);
-        std::vector<double> power(body.surface.elements.count(), 0.0);
+        ElementHeat power;
         const Absorption a = absorb(map, laser, Vec3(20, 20, 0), laser.power, body.surface.elements, power);
         EXPECT_NEAR(a.absorbed, 0.4 * 200.0, 1e-9) << degrees << " degrees";
         EXPECT_NEAR(a.missed, 0.0, 1e-9);
-        EXPECT_NEAR(sum_of(power), a.absorbed, 1e-10);
+        EXPECT_NEAR(sum_of(power.amount), a.absorbed, 1e-10);
         EXPECT_GT(a.scale, 0.9) << degrees << " degrees";
         EXPECT_LT(a.scale, 1.1) << degrees << " degrees";
         // the centre of what it absorbs is the centre of the beam
         Vec3 centre = Vec3::Zero();
-        for (std::int64_t s = 0; s < body.surface.elements.count(); ++s)
-            centre += power[s] / a.absorbed * body.surface.elements.point[s];
+        for (std::size_t n = 0; n < power.element.size(); ++n)
+            centre += power.amount[n] / a.absorbed * body.surface.elements.point[power.element[n]];
         EXPECT_NEAR(centre[0], 20.0, 0.3);
         EXPECT_NEAR(centre[1], 20.0, 0.3);
     }
@@ -167,7 +186,7 @@ TEST(Illumination, light_beside_the_body_is_missed) {
     const Body body = make_body({32, 20, 16}, [](const Vec3& x) { return x[2] < 8.0 && x[0] < 16.0; });
     const LightMap map = make_light_map(body.grid, body.surface, Vec3(0, 0, -1));
     const Laser laser = beam(5.0);
-    std::vector<double> power(body.surface.elements.count(), 0.0);
+    ElementHeat power;
     const Absorption a = absorb(map, laser, Vec3(16, 10, 0), laser.power, body.surface.elements, power);
     EXPECT_NEAR(a.missed, 0.5 * laser.power, 0.04 * laser.power);
     EXPECT_NEAR(a.absorbed + 0.4 * a.missed, 0.4 * laser.power, 1e-9);
@@ -200,10 +219,10 @@ TEST(Illumination, what_lies_in_the_shadow_of_another_body_stays_dark) {
 TEST(Illumination, beam_that_is_off_gives_nothing) {
     const Body body = tilted_plate(0.0);
     const LightMap map = make_light_map(body.grid, body.surface, Vec3(0, 0, -1));
-    std::vector<double> power(body.surface.elements.count(), 0.0);
+    ElementHeat power;
     const Absorption a = absorb(map, beam(8.0), Vec3(20, 20, 0), 0.0, body.surface.elements, power);
     EXPECT_EQ(a.absorbed, 0.0);
-    EXPECT_EQ(sum_of(power), 0.0);
+    EXPECT_TRUE(power.element.empty());
 }
 
 } // namespace

@@ -35,6 +35,7 @@ inline ParticleList block_particles(const Grid& grid, double height, double temp
     const Material material = steel();
     const double spacing = 0.5 * grid.dx;
     const double density = material.density * (packing > 0.0 ? packing : 1.0);
+    const double energy = make_equation_of_state(material).energy(temperature);
     ParticleList list;
     for (std::int64_t k = 0; k < 2 * grid.cells[2]; ++k)
         for (std::int64_t j = 0; j < 2 * grid.cells[1]; ++j)
@@ -45,7 +46,7 @@ inline ParticleList block_particles(const Grid& grid, double height, double temp
                 list.position.push_back(x);
                 list.volume.push_back(std::pow(spacing, 3));
                 list.mass.push_back(density * std::pow(spacing, 3));
-                list.specific_energy.push_back(make_equation_of_state(material).energy(temperature));
+                list.specific_energy.push_back(energy);
                 list.id.push_back(list.size() - 1);
                 list.material.push_back(0);
                 if (packing > 0.0)
@@ -59,6 +60,7 @@ inline RunParameters block_parameters() {
     parameters.materials = {steel()};
     parameters.time.end = 1.0;
     parameters.isotherms = {1700.0};
+    parameters.physics.quiescent_tolerance = 0.0;
     return parameters;
 }
 

@@ -286,6 +286,9 @@ TEST(scenario_refusal, impossible_numerics_and_outputs_are_refused) {
          {"radiation = false", "blend_time = 0", "physics.blend_time: must be above 0"},
          {"radiation = false", "reabsorption = true", "physics.reabsorption: needs radiation = true"},
          {"radiation = false", "ambient = 0", "physics.ambient: must be above 0"},
+         {"radiation = false", "quiescent_tolerance = -1e-6",
+          "physics.quiescent_tolerance: must be at least 0 and at most 10"},
+         {"radiation = false", "quiescent_tolerance = \"1 degC\"", "physics.quiescent_tolerance: must be at"},
          {"[physics]", "[level_set]\nradius = 0.5\n[physics]",
           "level_set.radius: must be at least 0.87 and at most 4"},
          {"[physics]", "[level_set]\nepsilon = 0\n[physics]", "level_set.epsilon: must be at least 0.05"}});

@@ -102,6 +102,7 @@ void expect_equal(const Scenario& a, const Scenario& b) {
     EXPECT_EQ(a.physics.evaporation, b.physics.evaporation);
     EXPECT_EQ(a.physics.reabsorption, b.physics.reabsorption);
     EXPECT_EQ(a.physics.ambient, b.physics.ambient);
+    EXPECT_EQ(a.physics.quiescent_tolerance, b.physics.quiescent_tolerance);
     EXPECT_EQ(a.level_set.radius, b.level_set.radius);
     EXPECT_EQ(a.level_set.epsilon, b.level_set.epsilon);
     EXPECT_EQ(a.time.end, b.time.end);
@@ -240,6 +241,7 @@ diffusion = "energy"
 deposit = "band"
 blend_time = "1.3 us"
 ambient = 295.3
+quiescent_tolerance = "1.7 mK"
 
 [level_set]
 radius = 1.1

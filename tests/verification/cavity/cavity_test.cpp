@@ -39,7 +39,7 @@ struct Enclosure {
         options.radiation = true;
         options.ambient = ambient;
         laws = make_loss_laws({material}, options);
-        loss = make_loss_elements(run.grid, run.boundary, run.particles, surface.elements, run.nodes);
+        loss = make_loss_elements(run.grid, run.boundary, surface.elements, run.nodes);
         exchange = make_radiative_exchange(run.grid, surface, run.particles, {material}, {});
     }
 
@@ -85,7 +85,7 @@ TEST(Cavity, closed_and_isothermal_it_loses_nothing) {
     Enclosure e(0.4, 1900.0);
     ThermalRun& run = e.run;
     const SurfaceElements& elements = e.surface.elements;
-    std::vector<double> temperature, gain, energy;
+    std::vector<double> temperature, energy;
     double radiated = 0.0, reabsorbed = 0.0;
     run.advance(50 * 0.5 * dx * dx / 5.2e-6, 5.2e-6, [&](double dt) {
         surface_temperatures(run.grid, elements, run.nodes, temperature);
@@ -94,10 +94,8 @@ TEST(Cavity, closed_and_isothermal_it_loses_nothing) {
         for (double& joule : energy)
             joule *= dt;
         deposit(run.grid, elements, energy, run.nodes);
-        surface_gains(run.grid, run.boundary, elements, e.loss, run.nodes, gain);
-        energy.assign(temperature.size(), 0.0);
-        radiated += lose_heat(e.laws, e.eos, elements, e.loss, temperature, gain, dt, energy).radiated;
-        deposit(run.grid, elements, energy, run.nodes);
+        radiated +=
+            deposit_losses(run.grid, run.boundary, e.laws, e.eos, elements, dt, e.loss, run.nodes).radiated;
     });
     // The loss is implicit, its coefficient and the gain are of the step's start: they differ by what the
     // unevenness of the surface does to the gain within a step.

@@ -26,21 +26,17 @@ double error_with_convection(int cells) {
     options.convection = h;
     options.ambient = ambient;
     const std::vector<LossLaw> laws = make_loss_laws({material}, options);
-    LossElements loss = make_loss_elements(grid, Boundary{}, run.particles, elements, run.nodes);
+    LossElements loss = make_loss_elements(grid, Boundary{}, elements, run.nodes);
 
     double gained = 0.0; // J
-    std::vector<double> heat(elements.count()), temperature, gain;
+    std::vector<double> heat(elements.count());
     run.advance(t, 1.0, [&](double dt) {
         for (std::int64_t s = 0; s < elements.count(); ++s) {
             heat[s] = q * elements.area[s] * dt;
             gained += heat[s];
         }
-        surface_temperatures(grid, elements, run.nodes, temperature);
         deposit(grid, elements, heat, run.nodes);
-        surface_gains(grid, Boundary{}, elements, loss, run.nodes, gain);
-        std::fill(heat.begin(), heat.end(), 0.0);
-        gained -= lose_heat(laws, eos, elements, loss, temperature, gain, dt, heat).convected;
-        deposit(grid, elements, heat, run.nodes);
+        gained -= deposit_losses(grid, Boundary{}, laws, eos, elements, dt, loss, run.nodes).convected;
     });
     EXPECT_NEAR(total_energy(run.particles) - run.start_energy, gained, 1e-12 * run.start_energy);
 

@@ -29,12 +29,9 @@ double flux_from_a_plate(double temperature) {
     const FreeSurface surface = find_free_surface(grid, run.particles, run.nodes, {}, true);
     LossOptions options;
     options.evaporation = true;
-    const LossElements loss =
-        make_loss_elements(grid, run.boundary, run.particles, surface.elements, run.nodes);
-    std::vector<double> at_surface, energy(surface.elements.count(), 0.0);
-    surface_temperatures(grid, surface.elements, run.nodes, at_surface);
-    const LossEnergy lost = lose_heat(make_loss_laws({steel()}, options), eos, surface.elements, loss,
-                                      at_surface, {}, dt, energy);
+    LossElements loss = make_loss_elements(grid, run.boundary, surface.elements, run.nodes);
+    const LossEnergy lost = deposit_losses(grid, run.boundary, make_loss_laws({steel()}, options), eos,
+                                           surface.elements, dt, loss, run.nodes);
     return lost.evaporated / (64.0 * dx * dx * dt);
 }
 

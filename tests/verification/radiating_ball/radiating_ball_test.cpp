@@ -47,20 +47,16 @@ double cooling_error(int cells, ResultTable& table) {
     options.radiation = true;
     options.ambient = ambient;
     const std::vector<LossLaw> laws = make_loss_laws({material}, options);
-    LossElements loss = make_loss_elements(grid, run.boundary, run.particles, surface.elements, run.nodes);
+    LossElements loss = make_loss_elements(grid, run.boundary, surface.elements, run.nodes);
     double mass = 0.0;
     for (const double m : run.particles.mass)
         mass += m;
 
     double radiated = 0.0, error = 0.0;
-    std::vector<double> temperature, gain, energy;
     for (int part = 1; part <= 5; ++part) {
         run.advance(0.02, conductivity / (density * heat_capacity), [&](double dt) {
-            surface_temperatures(grid, surface.elements, run.nodes, temperature);
-            surface_gains(grid, run.boundary, surface.elements, loss, run.nodes, gain);
-            energy.assign(temperature.size(), 0.0);
-            radiated += lose_heat(laws, eos, surface.elements, loss, temperature, gain, dt, energy).radiated;
-            deposit(grid, surface.elements, energy, run.nodes);
+            radiated +=
+                deposit_losses(grid, run.boundary, laws, eos, surface.elements, dt, loss, run.nodes).radiated;
         });
         const double mean = total_energy(run.particles) / (mass * heat_capacity);
         const double exact = lumped_temperature(1.0, run.time);

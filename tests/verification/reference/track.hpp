@@ -51,12 +51,11 @@ class Track {
     /// Runs one pass of `duration`, the beam moving from the start.
     void pass(double duration) {
         double t = 0.0;
-        std::vector<double> heat(surface.elements.count());
+        ElementHeat heat;
         run.advance(duration, 1.0, [&](double dt) {
-            std::fill(heat.begin(), heat.end(), 0.0);
             const Absorption a = absorb(map_, laser_, Vec3(exact.beam(t + 0.5 * dt), 0, 0), laser_.power,
                                         surface.elements, heat);
-            for (double& value : heat)
+            for (double& value : heat.amount)
                 value *= dt;
             deposit(run.grid, surface.elements, heat, run.nodes);
             absorbed += a.absorbed * dt;

@@ -12,7 +12,9 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <array>
 #include <cstdlib>
+#include <utility>
 
 namespace meltscope::benchmarks {
 namespace {
@@ -83,12 +85,28 @@ Outcome median_outcome(const Run& run) {
     return outcome;
 }
 
+/// The temperature field at a node, K: sum_i N_i T_i / sum_i N_i over the nodes with mass around it. The
+/// nodes' own values are the spline's coefficients, which the field passes by.
+double field_at(const Simulation& s, std::int64_t node) {
+    constexpr std::array weight{0.125, 0.75, 0.125};
+    double sum = 0.0, of_weights = 0.0;
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                const std::int64_t at = node + i - 1 + (j - 1) * s.grid.stride_y + (k - 1) * s.grid.stride_z;
+                const double w = s.nodes.temperature[at] > 0.0 ? weight[i] * weight[j] * weight[k] : 0.0;
+                sum += w * s.nodes.temperature[at];
+                of_weights += w;
+            }
+    return sum / of_weights;
+}
+
 Outcome run_particles(const Setting& setting, const ExactRise& exact, std::int64_t& particles) {
     const Scenario scenario = plate_scenario(setting);
     Simulation s = make_simulation(run_parameters(scenario), scenario_grid(scenario), fill_scenario(scenario),
                                    lattice_of(scenario));
     particles = s.particles.count();
-    const double start = s.peak_temperature;
+    const double start = s.eos[0].temperature(s.particles.specific_energy[s.particles.layout.place[0]]);
     const Stopwatch watch;
     while (s.time < s.parameters.time.end)
         advance(s, s.parameters.time.end);
@@ -96,7 +114,7 @@ Outcome run_particles(const Setting& setting, const ExactRise& exact, std::int64
     outcome.seconds = watch.seconds();
     outcome.steps = s.step;
     outcome.error_percent = exact.error_percent([&](std::int64_t i, std::int64_t j, std::int64_t k) {
-        return s.nodes.temperature[s.grid.index(i, j, k)] - start;
+        return field_at(s, s.grid.index(i, j, k)) - start;
     });
     return outcome;
 }
@@ -112,30 +130,25 @@ Outcome run_differences(const PlateCells& cells, const ExactRise& exact) {
             differences.steps()};
 }
 
-/// The runs of one cell size that have at most `limit` particle-steps.
-void compare(double dx, std::int64_t limit) {
+/// All methods and settings at one cell size.
+void compare(double dx) {
     const PlateCells cells(dx);
     const ExactRise exact(cells);
     const auto print = [&](const char* method, const Setting& s, std::int64_t unknowns, const Outcome& o) {
-        fmt::print("{},{:.4g},{},{},{},{},{},{:.4g},{:.4g}\n", method, 1e6 * s.dx, s.particles_per_cell,
+        fmt::print("{},{:.4g},{},{},{:.3g},{},{},{:.4g},{:.4g}\n", method, 1e6 * s.dx, s.particles_per_cell,
                    s.transfer, s.cfl, unknowns, o.steps, o.seconds, o.error_percent);
         std::fflush(stdout);
     };
     print("differences", {dx, 0, "none", 1.0 / 6.0}, exact.nx * exact.ny * exact.nz,
           median_outcome([&] { return run_differences(cells, exact); }));
-    const double plate = double(cells.x) * double(cells.y) * double(cells.z); // cells
-    const double cell_times = Plate::end_time * Plate::diffusivity / (dx * dx);
     for (const int per_cell : {1, 8})
-        for (const char* transfer : {"affine", "flip"})
-            for (const double cfl : {0.25, 0.5, 0.8}) {
-                if (plate * per_cell * cell_times / cfl > double(limit))
-                    continue;
-                const Setting setting{dx, per_cell, transfer, cfl};
-                std::int64_t particles = 0;
-                const Outcome outcome =
-                    median_outcome([&] { return run_particles(setting, exact, particles); });
-                print("particles", setting, particles, outcome);
-            }
+        for (const auto& [transfer, cfl] :
+             {std::pair{"affine", 0.35}, std::pair{"affine", 0.5}, std::pair{"flip", 0.5}}) {
+            const Setting setting{dx, per_cell, transfer, cfl};
+            std::int64_t particles = 0;
+            const Outcome outcome = median_outcome([&] { return run_particles(setting, exact, particles); });
+            print("particles", setting, particles, outcome);
+        }
 }
 
 } // namespace
@@ -143,14 +156,20 @@ void compare(double dx, std::int64_t limit) {
 
 int main(int count, char** words) {
     using namespace meltscope;
-    if (count > 2) {
-        fmt::print(stderr, "usage: {} [PARTICLE-STEPS OF A RUN AT MOST]\n", words[0]);
-        return 2;
+    std::vector<double> cells{20.0, 125.0 / 7.0, 15.625, 12.5, 10.0};
+    if (count > 1) {
+        cells.clear();
+        for (int n = 1; n < count; ++n)
+            cells.push_back(std::atof(words[n]));
     }
-    const std::int64_t limit = count > 1 ? std::int64_t(std::atof(words[1])) : std::int64_t(1) << 60;
+    for (const double cell : cells)
+        if (!(cell >= 2.0 && cell <= 50.0)) {
+            fmt::print(stderr, "usage: {} [CELL SIZE IN UM, 2 TO 50]...\n", words[0]);
+            return 2;
+        }
     fmt::print("# threads {}, FMA probe {:.1f} GFLOP/s, STREAM triad {:.1f} GB/s\n", omp_get_max_threads(),
                probe_fma_gflops(), probe_triad_gb_per_s());
     fmt::print("method,cell_um,particles_per_cell,transfer,cfl,unknowns,steps,seconds,error_percent\n");
-    for (const double dx : {25e-6, 20e-6, 12.5e-6, 10e-6, 6.25e-6, 5e-6})
-        benchmarks::compare(dx, limit);
+    for (const double cell : cells)
+        benchmarks::compare(1e-6 * cell);
 }

@@ -155,9 +155,9 @@ TEST(RunState, a_simulation_of_which_a_part_sleeps_goes_on_bit_for_bit) {
     run.simulation = make_simulation(parameters, grid, list, 2);
     advance(run.simulation, 1.0);
     CheckpointData data = checkpoint_of(run, "");
-    ASSERT_EQ(data.grid.size(), 2u);
-    EXPECT_EQ(data.grid[1].dims, (std::vector<std::uint64_t>{3, 3, 4}));
-    const auto awake = std::count(data.grid[1].values.begin(), data.grid[1].values.end(), 1.0);
+    ASSERT_EQ(data.grid.size(), 3u);
+    EXPECT_EQ(data.grid[2].dims, (std::vector<std::uint64_t>{3, 3, 4}));
+    const auto awake = std::count(data.grid[2].values.begin(), data.grid[2].values.end(), 1.0);
     EXPECT_GT(awake, 0);
     EXPECT_LT(awake, 4 * 3 * 2);
 
@@ -171,7 +171,7 @@ TEST(RunState, a_simulation_of_which_a_part_sleeps_goes_on_bit_for_bit) {
     EXPECT_EQ(a.particles.specific_energy, b.particles.specific_energy);
     EXPECT_EQ(a.grid[0].values, b.grid[0].values);
 
-    data.grid[1].values.pop_back();
+    data.grid[2].values.pop_back();
     EXPECT_THROW(simulation_from(data, parameters, grid, 2), CheckpointError);
 }
 

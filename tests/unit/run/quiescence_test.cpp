@@ -236,7 +236,8 @@ TEST(Quiescence, the_number_of_threads_changes_nothing) {
 
 Simulation resumed(const Simulation& s) {
     return resume_simulation(s.parameters, s.grid, list_particles(s.particles), s.particles.lattice, s.time,
-                             s.step, s.dt, s.ledger, s.nodes.mass_energy, s.quiescence.bricks.awake);
+                             s.step, s.dt, s.ledger, s.nodes.mass_energy, s.least_temperature,
+                             s.quiescence.bricks.awake);
 }
 
 TEST(Quiescence, a_resumed_run_goes_on_bit_for_bit) {

@@ -10,10 +10,10 @@
 namespace meltscope {
 
 /// Cells along the axes within which a slope must not lead below the least energy. The B-spline coefficients
-/// of a field that falls off as exp(-k x/dx) are positive for k < 2.06, so with half a cell only what the grid
-/// cannot resolve is touched; what undershoots is a per mille of the peak. One and a half,
-/// which would be safe for each particle alone, cost accuracy at sudden steps.
-inline constexpr double slope_reach = 0.5;
+/// of a field that falls off as exp(-k x/dx) are positive for k < 2.06, so from half a cell on only what the
+/// grid cannot resolve is touched; a little more leaves less undershoot where a laser comes on. One and a
+/// half, which would be safe for each particle alone, costs accuracy at sudden steps.
+inline constexpr double slope_reach = 0.6;
 
 /// The least energy in J/kg for the lanes of a group; minus infinity for bins within one and a half cells of
 /// a face that lets heat through: there the field goes on below the face's temperature, and rightly so.

@@ -32,7 +32,7 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
 
 /// Step 7, G2P, and step 3 of the next step in the same pass:
 /// e_p <- (1 - b) [e_p + sum_i N_ip (e_i* - e_i)] + b sum_i N_ip e_i*, g_p = sum_i e_i* grad N_ip,
-/// (m e)_i = sum_p N_ip m_p (e_p + g_p . (x_i - x_p)). g_p is shortened where half a cell along it would
+/// (m e)_i = sum_p N_ip m_p (e_p + g_p . (x_i - x_p)). g_p is shortened where 0.6 cells along it would
 /// lead below the least energy; energy is conserved for any g_p.
 void grid_to_particles_to_grid(const Grid& grid, const StepOptions& options, Particles& particles,
                                Nodes& nodes);

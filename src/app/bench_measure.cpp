@@ -41,8 +41,8 @@ void count_bytes(const Simulation& s, SetupFigures& figures) {
         of_particles += bytes_of(*field);
     const Nodes& n = s.nodes;
     double of_nodes = 0.0;
-    for (const Field* field : {&n.mass, &n.inertia, &n.mass_energy, &n.temperature, &n.increment,
-                               &s.surface.phi, &s.surface.phi_hat})
+    for (const Field* field :
+         {&n.mass, &n.inertia, &n.mass_energy, &n.temperature, &n.increment, &s.surface.phi})
         of_nodes += bytes_of(*field);
     for (const auto* fields : {&n.energy, &n.new_energy, &n.material_mass})
         for (const Field& field : *fields)

@@ -45,19 +45,10 @@ SurfaceGroups find_surface_groups(const Grid& grid, const Particles& particles, 
     return near;
 }
 
-/// What the particles of the surface groups find at their places, entry by entry.
-struct AtParticles {
-    Field weight;                       ///< s_p, m^2; zero beyond the gate
-    Field normal_x, normal_y, normal_z; ///< grad phi_hat, per cell
-    Field distance;                     ///< phi, m
-    Field area;                         ///< a_p, m^2
-};
-
-AtParticles gather_at_particles(const Grid& grid, const Particles& particles, const FreeSurface& surface,
-                                const SurfaceGroups& near) {
-    AtParticles at;
-    for (Field* field : {&at.weight, &at.normal_x, &at.normal_y, &at.normal_z, &at.distance, &at.area})
-        field->assign(near.entries, 0.0);
+/// s_p in m^2 of the particles of the surface groups, entry by entry; zero beyond the gate.
+Field surface_weights(const Grid& grid, const Particles& particles, const Field& phi_hat,
+                      const SurfaceGroups& near) {
+    Field weight(near.entries, 0.0);
     const LatticeStencils lattices;
 #pragma omp parallel for schedule(static)
     for (std::size_t n = 0; n < near.group.size(); ++n) {
@@ -66,23 +57,17 @@ AtParticles gather_at_particles(const Grid& grid, const Particles& particles, co
         for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
             using Stencil = std::decay_t<decltype(stencil)>;
             typename Stencil::Points f;
-            stencil.gather(surface.phi_hat.data() + group.corner, grid.stride_y, grid.stride_z, f);
-            std::array<Lanes, Stencil::points> distance;
-            stencil.gather(surface.phi.data() + group.corner, grid.stride_y, grid.stride_z, distance);
+            stencil.gather(phi_hat.data() + group.corner, grid.stride_y, grid.stride_z, f);
             for (int p = 0; p < Stencil::points; ++p) {
                 const std::int64_t entry = first + p * lane_count;
                 const Lanes slope = sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]) / grid.dx;
                 store(select(abs(f.value[p]) <= surface_gate, slope * load(&particles.volume[entry]),
                              Lanes(0.0)),
-                      &at.weight[entry + shift]);
-                store(f.x[p], &at.normal_x[entry + shift]);
-                store(f.y[p], &at.normal_y[entry + shift]);
-                store(f.z[p], &at.normal_z[entry + shift]);
-                store(distance[p], &at.distance[entry + shift]);
+                      &weight[entry + shift]);
             }
         });
     }
-    return at;
+    return weight;
 }
 
 /// sum_q N_iq s_q
@@ -110,9 +95,9 @@ Field sum_at_nodes(const Grid& grid, const Particles& particles, const SurfaceGr
     return total;
 }
 
-/// a_p = s_p sum_i N_ip A_i / sum_q N_iq s_q
+/// Turns s_p into a_p = s_p sum_i N_ip A_i / sum_q N_iq s_q, m^2.
 void share_out_areas(const Grid& grid, const Particles& particles, const SurfaceGroups& near,
-                     const Field& area_by_weight, AtParticles& at) {
+                     const Field& area_by_weight, Field& weight) {
     const LatticeStencils lattices;
 #pragma omp parallel for schedule(static)
     for (std::size_t n = 0; n < near.group.size(); ++n) {
@@ -123,7 +108,7 @@ void share_out_areas(const Grid& grid, const Particles& particles, const Surface
             stencil.gather(area_by_weight.data() + group.corner, grid.stride_y, grid.stride_z, share);
             for (std::size_t p = 0; p < share.size(); ++p) {
                 const std::int64_t entry = first + std::int64_t(p) * lane_count + shift;
-                store(share[p] * load(&at.weight[entry]), &at.area[entry]);
+                store(share[p] * load(&weight[entry]), &weight[entry]);
             }
         });
     }
@@ -160,6 +145,41 @@ Chosen choose_particles(const Particles& particles, const SurfaceGroups& near, c
         all.entry.insert(all.entry.end(), some.entry.begin(), some.entry.end());
     }
     return all;
+}
+
+/// Foot points and normals of the chosen particles.
+void find_feet(const Grid& grid, const Particles& particles, const SurfaceGroups& near, const Field& phi,
+               const Field& phi_hat, const std::vector<std::int64_t>& entries, SurfaceElements& elements) {
+    std::vector<std::int64_t> element_at(near.entries, -1);
+    for (std::size_t s = 0; s < entries.size(); ++s)
+        element_at[entries[s]] = std::int64_t(s);
+    elements.point.resize(entries.size());
+    elements.normal.resize(entries.size());
+    const LatticeStencils lattices;
+#pragma omp parallel for schedule(static)
+    for (std::size_t n = 0; n < near.group.size(); ++n) {
+        const LaneGroup& group = particles.layout.groups[near.group[n]];
+        const std::int64_t shift = near.first[near.group[n]] - group.first_slot * lane_count;
+        for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+            using Stencil = std::decay_t<decltype(stencil)>;
+            typename Stencil::Points f;
+            stencil.gather(phi_hat.data() + group.corner, grid.stride_y, grid.stride_z, f);
+            std::array<Lanes, Stencil::points> distance;
+            stencil.gather(phi.data() + group.corner, grid.stride_y, grid.stride_z, distance);
+            for (int p = 0; p < Stencil::points; ++p)
+                for (int lane = 0; lane < lane_count; ++lane) {
+                    const std::int64_t s = element_at[first + p * lane_count + lane + shift];
+                    if (s < 0)
+                        continue;
+                    const Vec3 normal = Vec3(f.x[p][lane], f.y[p][lane], f.z[p][lane]).normalized();
+                    elements.normal[s] = normal;
+                    elements.point[s] =
+                        (particles.position[elements.particle[s]] - double(distance[p][lane]) * normal)
+                            .cwiseMax(grid.origin)
+                            .cwiseMin(grid.upper_corner());
+                }
+        });
+    }
 }
 
 /// A_i = dx^3 |grad phi_i| hat(phi_i), the box's share of the node's cell. The hat is (|n_x| + |n_y| + |n_z|)
@@ -230,30 +250,21 @@ FreeSurface find_free_surface(const Grid& grid, const Particles& particles, cons
                               const LevelSetOptions& options, bool at_surface) {
     FreeSurface surface;
     surface.phi = signed_distance(grid, particles, options);
-    surface.phi_hat = regularized(grid, surface.phi, options);
+    const Field phi_hat = regularized(grid, surface.phi, options);
 
-    const SurfaceGroups near = find_surface_groups(grid, particles, surface.phi_hat);
-    AtParticles at = gather_at_particles(grid, particles, surface, near);
-    Field nodal = sum_at_nodes(grid, particles, near, at.weight);
+    const SurfaceGroups near = find_surface_groups(grid, particles, phi_hat);
+    Field weight = surface_weights(grid, particles, phi_hat, near);
+    Field nodal = sum_at_nodes(grid, particles, near, weight);
     divide_areas_by(grid, surface.phi, nodal);
-    share_out_areas(grid, particles, near, nodal, at);
+    share_out_areas(grid, particles, near, nodal, weight);
 
-    Chosen chosen = choose_particles(particles, near, at.area);
     SurfaceElements& elements = surface.elements;
+    const Field& area = weight;
+    Chosen chosen = choose_particles(particles, near, area);
     elements.particle = std::move(chosen.particle);
-    elements.area.resize(elements.particle.size());
-    elements.point.resize(elements.particle.size());
-    elements.normal.resize(elements.particle.size());
-#pragma omp parallel for schedule(static)
-    for (std::size_t s = 0; s < elements.particle.size(); ++s) {
-        const std::int64_t entry = chosen.entry[s];
-        const Vec3& x = particles.position[elements.particle[s]];
-        const Vec3 normal = Vec3(at.normal_x[entry], at.normal_y[entry], at.normal_z[entry]).normalized();
-        elements.area[s] = at.area[entry];
-        elements.normal[s] = normal;
-        elements.point[s] =
-            (x - at.distance[entry] * normal).cwiseMax(grid.origin).cwiseMin(grid.upper_corner());
-    }
+    for (const std::int64_t entry : chosen.entry)
+        elements.area.push_back(area[entry]);
+    find_feet(grid, particles, near, surface.phi, phi_hat, chosen.entry, elements);
     std::vector<Vec3> places = elements.point;
     if (!at_surface)
         for (std::size_t s = 0; s < places.size(); ++s)

@@ -82,8 +82,8 @@ void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materia
 /// Makes up for the lumped mass: D_i += m_i q_i - sum_p m_p N_ip sum_j N_jp q_j. With q = D/m this is one
 /// Jacobi sweep towards the consistent mass, which removes the scheme's error of order dx^2 (lumping smooths
 /// heat sources and slows short waves by k^2 dx^2 / 4); the part of q that grows with dt removes Euler's
-/// error of order dt, half (alpha k^2)^2 dt, in the same breath. Returns the change of D in J near faces of
-/// fixed temperature.
+/// error of order dt, half (alpha k^2)^2 dt, in the same breath. Takes the sum off D_i and leaves q in the
+/// storage of e*, for step 6 to add; returns the change of D in J near faces of fixed temperature.
 double undo_lumping(const Grid& grid, const Particles& particles,
                     const std::vector<EquationOfState>& materials, const Boundary& boundary,
                     const StepOptions& options, const Field& inertia, double dt, Nodes& nodes) {
@@ -111,9 +111,6 @@ double undo_lumping(const Grid& grid, const Particles& particles,
         change += nodes.mass[i] * q[i];
 
     fold_ghosts(grid, boundary, AtFixedFaces::odd, nodes.increment);
-    for_each_node_lanes(nodes.spans, [&](std::int64_t i) {
-        store(load(&nodes.increment[i]) + load(&inertia[i]) * load(&q[i]), &nodes.increment[i]);
-    });
     return change;
 }
 
@@ -194,12 +191,13 @@ double update_grid_energy(const Grid& grid, const Particles& particles,
     if (options.affine)
         conducted -= undo_lumping(grid, particles, materials, boundary, options, inertia, dt, nodes);
 
-    // e_i* = e_i + D_i / m_i
+    // e_i* = e_i + D_i / m_i, and q_i is D_i / m_i that undo_lumping has not added yet
     for_each_node_lanes(nodes.spans, [&](std::int64_t i) {
         const Lanes mass = load(&inertia[i]);
         const auto filled = mass > 0.0;
-        const Lanes rise =
-            select(filled, load(&nodes.increment[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
+        Lanes rise = select(filled, load(&nodes.increment[i]) / select(filled, mass, Lanes(1.0)), Lanes(0.0));
+        if (options.affine)
+            rise += select(filled, load(&nodes.new_energy[0][i]), Lanes(0.0));
         for (int a = 0; a < count; ++a)
             store(load(&nodes.energy[a][i]) + rise, &nodes.new_energy[a][i]);
     });

@@ -185,13 +185,13 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 }
 
 /// Fills the snapshot's particles and counts the molten ones.
-void sample_particles(const Simulation& s, ParticleSelection selection, Snapshot& snapshot) {
+void sample_particles(const Simulation& s, ParticleSelection selection, const Field& node_phi_hat,
+                      Snapshot& snapshot) {
     const Particles& particles = s.particles;
     const Field temperature = particle_temperatures(s.grid, particles, s.nodes);
     const bool needs_phi = selection == ParticleSelection::surface || selection == ParticleSelection::melt ||
                            selection == ParticleSelection::all;
-    const Field phi_hat =
-        needs_phi ? interpolate_to_particles(s.grid, particles, s.surface.phi_hat) : Field{};
+    const Field phi_hat = needs_phi ? interpolate_to_particles(s.grid, particles, node_phi_hat) : Field{};
     const std::int64_t count = particles.count(), parts = omp_get_max_threads();
     std::vector<SampledRange> ranges(parts);
 #pragma omp parallel for schedule(static)
@@ -228,7 +228,8 @@ Snapshot take_snapshot(const Simulation& s, ParticleSelection particles) {
         return std::make_shared<const std::vector<double>>(std::move(f));
     };
     snapshot.phi = share(without_padding(s.grid, s.surface.phi));
-    snapshot.phi_hat = share(without_padding(s.grid, s.surface.phi_hat));
+    const Field phi_hat = regularized(s.grid, s.surface.phi, s.parameters.level_set);
+    snapshot.phi_hat = share(without_padding(s.grid, phi_hat));
     snapshot.mass = share(without_padding(s.grid, node_masses(s)));
     snapshot.temperature = share(node_temperatures(s));
     snapshot.peak_temperature = hottest_inside(snapshot.nodes, *snapshot.phi, *snapshot.temperature);
@@ -237,7 +238,7 @@ Snapshot take_snapshot(const Simulation& s, ParticleSelection particles) {
     for (const Laser& laser : s.parameters.lasers)
         snapshot.beams.push_back(beam_snapshot(laser, s.time));
     measure_pools(s.parameters.isotherms, snapshot);
-    sample_particles(s, particles, snapshot);
+    sample_particles(s, particles, phi_hat, snapshot);
     return snapshot;
 }
 

@@ -30,8 +30,7 @@ struct ElementHeat {
 
 /// Steps 1 and 2 and what follows from them; stands as long as the particles do.
 struct FreeSurface {
-    Field phi;     ///< phi_i, m
-    Field phi_hat; ///< phi_hat_i
+    Field phi; ///< phi_i, m; phi_hat_i follows from it, see regularized()
     SurfaceElements elements;
 };
 

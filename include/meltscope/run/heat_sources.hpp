@@ -2,8 +2,9 @@
 
 #include "meltscope/run/simulation.hpp"
 
-/// Step 5, the heat that does not come by conduction: what goes into D_i over a step of `dt` (s), and into the
-/// ledger. In this order: losses are implicit in the temperature to which all other heat of the surface leads.
+/// Step 5, the heat that does not come by conduction: what goes into D_i over a step of `dt` (s), and into
+/// the ledger. In this order: losses are implicit in the temperature to which all other heat of the surface
+/// leads.
 namespace meltscope {
 
 /// The lasers': what each surface element absorbs, or each particle that a volumetric beam reaches.

@@ -34,8 +34,8 @@ struct FreeSurface {
     SurfaceElements elements;
 };
 
-/// Finds the free surface. `at_surface`: heat goes in at the foot points x_s; otherwise at the particles (the
-/// seed's volume source in the band).
+/// Finds the free surface. `at_surface`: heat goes in at the foot points x_s; otherwise in the volume of the
+/// particles of the band.
 ///
 /// A node's share of the surface is A_i = dx^3 |grad phi_i| hat(phi_i), hat(s) = max(0, 1 - |s|/w)/w, w =
 /// (|n_x| + |n_y| + |n_z|) dx, and a particle takes a_p = sum_i A_i N_ip s_p / sum_q N_iq s_q with s_p = v_p

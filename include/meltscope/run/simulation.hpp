@@ -20,9 +20,9 @@ inline constexpr double highest_quiescent_tolerance = 10.0;
 
 /// Which numerical forms and physical effects are on. Steerable between steps, but for transfer and deposit.
 struct PhysicsOptions {
-    bool affine_transfer = true;      ///< false: the seed's values alone (FLIP)
+    bool affine_transfer = true;      ///< false: the values alone (FLIP)
     bool deposit_at_surface = true;   ///< false: in the band, at the particles
-    bool diffuse_energy = false;      ///< the seed's form of the flux; one material only
+    bool diffuse_energy = false;      ///< F = -(kappa/c) grad e; one material only
     std::optional<double> blend_time; ///< s, tau of b = min(1, dt/tau); default: dx^2/alpha_max, of
                                       ///< homogenised powder if there is any (affine), never (flip)
     bool radiation = false;

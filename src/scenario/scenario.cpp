@@ -9,6 +9,10 @@
 namespace meltscope {
 namespace {
 
+/// Cells across a Gaussian beam for these errors on a plate; see "Time to solution" in
+/// tests/benchmarks/README.md.
+constexpr double cells_for_three_percent = 10.0, cells_for_one_percent = 12.0;
+
 bool is_used(const Scenario& scenario, std::size_t material) {
     return std::any_of(
                scenario.bodies.begin(), scenario.bodies.end(),
@@ -53,6 +57,14 @@ std::vector<std::string> scenario_notes(const Scenario& scenario) {
                 fmt::format("laser \"{}\": its path ends at t = {:g} s, after time.end = {:g} s; the "
                             "rest is not run",
                             laser.name, end, scenario.time.end));
+        const double width = 2.0 * laser.spot_radius, cells = width / scenario.domain.cell_size;
+        if (cells < 0.999 * cells_for_three_percent)
+            notes.push_back(fmt::format(
+                "laser \"{}\": its beam (1/e^2 diameter {:g} um) is {:.3g} cells wide; temperatures err by "
+                "some "
+                "3 % of the peak with {:g} cells, 1 % with {:g}: a cell_size of {:.3g} or {:.3g} um",
+                laser.name, 1e6 * width, cells, cells_for_three_percent, cells_for_one_percent,
+                1e6 * width / cells_for_three_percent, 1e6 * width / cells_for_one_percent));
     }
     return notes;
 }

@@ -152,7 +152,7 @@ struct Scenario {
 /// Index in scenario.materials of the material called `name`; throws std::out_of_range if there is none.
 std::size_t material_index(const Scenario& scenario, const std::string& name);
 
-/// What of a scenario is allowed and has no effect, one sentence each; for the log.
+/// What of a scenario is allowed but has no effect, or is too coarse for good results; for the log.
 std::vector<std::string> scenario_notes(const Scenario& scenario);
 
 /// Views and colour maps a scenario may name.

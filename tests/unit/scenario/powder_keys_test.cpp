@@ -121,5 +121,14 @@ TEST(ScenarioNotes, say_what_is_not_run_and_what_is_not_used) {
     }
 }
 
+TEST(ScenarioNotes, say_that_cells_are_too_large_for_the_beam) {
+    Scenario scenario = read_scenario_text(example);
+    scenario.lasers[0].spot_radius = 5.0 * scenario.domain.cell_size; // ten cells across
+    EXPECT_TRUE(scenario_notes(scenario).empty());
+    scenario.lasers[0].spot_radius *= 0.5;
+    ASSERT_EQ(scenario_notes(scenario).size(), 1u);
+    EXPECT_NE(scenario_notes(scenario)[0].find("is 5 cells wide"), std::string::npos);
+}
+
 } // namespace
 } // namespace meltscope

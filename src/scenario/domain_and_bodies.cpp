@@ -90,8 +90,14 @@ Cylinder read_cylinder(const Section& section, const DomainSpec& domain) {
 template <class Powder>
 void read_balls(const Section& section, Powder& powder) {
     powder.d10 = section.above("d10", quantity::length, 0.0);
-    powder.d50 = section.in_range("d50", quantity::length, powder.d10, no_limit);
-    powder.d90 = section.in_range("d90", quantity::length, powder.d50, no_limit);
+    powder.d50 = section.above("d50", quantity::length, 0.0);
+    powder.d90 = section.above("d90", quantity::length, 0.0);
+    if (powder.d50 < powder.d10) {
+        section.fail("d50", fmt::format("must be at least d10 = {:g} m, is {:g} m", powder.d10, powder.d50));
+    }
+    if (powder.d90 < powder.d50) {
+        section.fail("d90", fmt::format("must be at least d50 = {:g} m, is {:g} m", powder.d50, powder.d90));
+    }
     powder.basis = section.choice("percentiles", words::percentiles, powder.basis);
     powder.packing = section.above("packing", quantity::number, 0.0, 0.74, powder.packing);
     powder.seed =

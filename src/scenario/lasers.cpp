@@ -237,6 +237,9 @@ Laser read_laser(const Section& section, const DomainSpec& domain, std::size_t i
         section.fail("super_gaussian_order", "belongs to profile = \"super_gaussian\"");
     }
     if (laser.profile == BeamProfile::volumetric) {
+        if (!section.has("volume_depth")) {
+            section.fail("volume_depth", "missing, and profile = \"volumetric\" needs it");
+        }
         laser.volume_depth = section.above("volume_depth", quantity::length, 0.0);
     } else if (section.has("volume_depth")) {
         section.fail("volume_depth", "belongs to profile = \"volumetric\"");

@@ -162,7 +162,7 @@ TEST(scenario_refusal, impossible_bodies_are_refused) {
                      {"shape = \"box\"\nmaterial = \"steel\"\n" + box,
                       "shape = \"powder\"\nmaterial = \"steel\"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nd10 = "
                       "2e-5\nd50 = 1e-5\nd90 = 3e-5",
-                      "body[0].d50: must be at least 2e-05"},
+                      "body[0].d50: must be at least d10 = 2e-05 m, is 1e-05 m"},
                      {"shape = \"box\"\nmaterial = \"steel\"\n" + box,
                       "shape = \"stl\"\nmaterial = \"steel\"\nfile = \"nowhere.stl\"",
                       "body[0].file: there is no file nowhere.stl"},
@@ -201,7 +201,7 @@ TEST(scenario_refusal, impossible_lasers_are_refused) {
          {"absorptivity = 0.4", "absorptivity = 0.4\nvolume_depth = 1e-5",
           "belongs to profile = \"volumetric\""},
          {"absorptivity = 0.4", "absorptivity = 0.4\nprofile = \"volumetric\"",
-          "laser[0].volume_depth: missing"},
+          "laser[0].volume_depth: missing, and profile"},
          {"absorptivity = 0.4", "absorptivity = 0.4\nname = \"a b\"", "laser[0].name: must be of letters"},
          {"absorptivity = 0.4", "absorptivity = 0.4\npath_format = \"3dthesis\"", "belongs to path_file"},
          {"absorptivity = 0.4", "absorptivity = 0.4\npath_file = \"x\"",

@@ -155,6 +155,28 @@ TEST_F(Pictures, an_empty_domain_and_no_laser_can_be_shown) {
     }
 }
 
+TEST_F(Pictures, moves_without_light_are_seen_but_fainter_than_scanned_lines) {
+    const auto with_path = [&](const std::vector<PathCorner>& done, const std::vector<PathCorner>& to_come) {
+        auto snapshot = test::make_snapshot(plate, 300e-6);
+        snapshot->beams.front().path_done = done;
+        snapshot->beams.front().path_to_come = to_come;
+        std::shared_ptr<const Geometry> geometry;
+        return renderer->render(make_instant(snapshot, geometry), {}, options, "top");
+    };
+    const Vec3 from(0.3e-3, 0.15e-3, 0.0), to(1.5e-3, 0.15e-3, 0.0); // beside the pool
+    const auto none = with_path({}, {});
+    const auto seen = [&](bool lit, bool done) {
+        const std::vector<PathCorner> line{{from}, {to, lit}};
+        return difference(none, done ? with_path(line, {}) : with_path({}, line));
+    };
+    for (const bool done : {true, false}) {
+        EXPECT_GT(seen(false, done), 0.05 * seen(true, done)) << done;
+        EXPECT_LT(seen(false, done), 0.5 * seen(true, done)) << done;
+    }
+    EXPECT_LT(seen(true, false), 0.7 * seen(true, true)) << "what is to come is dashed";
+    EXPECT_LT(seen(false, false), 0.7 * seen(false, true));
+}
+
 TEST_F(Pictures, png_keeps_picture_and_time) {
     const test::ScratchFolder scratch;
     const auto image = picture("overview", 300e-6);

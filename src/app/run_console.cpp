@@ -146,9 +146,11 @@ void RunConsole::open_prompt() {
         };
     const Console::Id id = console_.open(std::move(speaker));
     LineEditor::Callbacks callbacks;
-    callbacks.line = [this, id](const std::string& line) {
-        if (!console_.say(id, line))
+    callbacks.line = [this, id, person](const std::string& line) {
+        const bool taken = console_.say(id, line);
+        if (!taken && person)
             terminal_.warn("too many lines wait; this one is dropped: " + line);
+        return taken;
     };
     callbacks.interrupt = [this] { console_.interrupt(); };
     callbacks.end = [this, id, person] {

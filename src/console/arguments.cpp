@@ -151,6 +151,9 @@ void Arguments::done() const {
 }
 
 void require_between(double value, double low, double high, const std::string& what, const char* unit) {
+    if (!(value >= low) && std::isinf(high))
+        throw CommandError(
+            fmt::format("{} must be {} or more, not {}", what, shown(low, unit), shown(value, unit)));
     if (!(value >= low && value <= high))
         throw CommandError(fmt::format("{} must lie between {} and {}, not at {}", what, shown(low, unit),
                                        shown(high, unit), shown(value, unit)));
@@ -180,6 +183,7 @@ std::string shown(double value, std::string_view unit) {
 
 std::string resolve(const std::string& word, const std::vector<std::string>& candidates,
                     const std::string& kind) {
+    const std::string bare = kind.starts_with("the ") ? kind.substr(4) : kind;
     if (std::find(candidates.begin(), candidates.end(), word) != candidates.end())
         return word;
     std::vector<std::string> begun;
@@ -192,10 +196,10 @@ std::string resolve(const std::string& word, const std::vector<std::string>& can
         throw CommandError(fmt::format("\"{}\" may mean {}", word, listed(begun)));
     const std::string nearest = nearest_word(word, candidates);
     if (!nearest.empty())
-        throw CommandError(fmt::format("there is no {} \"{}\"; did you mean {}?", kind, word, nearest));
-    throw CommandError(candidates.size() <= 12 ? fmt::format("there is no {} \"{}\"; there are {}", kind,
+        throw CommandError(fmt::format("there is no {} \"{}\"; did you mean {}?", bare, word, nearest));
+    throw CommandError(candidates.size() <= 12 ? fmt::format("there is no {} \"{}\"; there are {}", bare,
                                                              word, listed(candidates))
-                                               : fmt::format("there is no {} \"{}\"", kind, word));
+                                               : fmt::format("there is no {} \"{}\"", bare, word));
 }
 
 } // namespace meltscope

@@ -10,6 +10,9 @@
 namespace meltscope {
 namespace {
 
+/// Lines of a script that may be under way to the run, which lets no more than a thousand wait.
+constexpr std::int64_t most_unanswered = 500;
+
 Descriptor connect_to(const std::filesystem::path& folder) {
     const Descriptor opened = open_own_folder(folder);
     Descriptor connection(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -119,14 +122,17 @@ bool attach(const std::filesystem::path& folder, bool watch) {
     callbacks.line = [&](const std::string& text) {
         if (!script && is_detach(text)) {
             leave();
-            return;
+            return true;
         }
         {
             const std::lock_guard lock(mutex);
+            if (script && asked - answered >= most_unanswered)
+                return false;
             ++asked;
             interrupted = false;
         }
         send_all(connection.get(), text + "\n");
+        return true;
     };
     callbacks.interrupt = [&] {
         const bool again = std::exchange(interrupted, true);

@@ -211,7 +211,8 @@ class AttachServer::Worker {
             if (line.empty() && !reply.text.empty())
                 outbox->put(lettered('n', reply.text));
             else if (!line.empty() || script)
-                outbox->put(lettered('r', reply.text) + (reply.ok ? "d\n" : "f\n"));
+                outbox->put(lettered('r', (reply.ok ? "" : "error: ") + reply.text) +
+                            (reply.ok ? "d\n" : "f\n"));
             pipe_.wake();
         };
         client.id = console_.open(std::move(speaker));

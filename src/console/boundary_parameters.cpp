@@ -48,9 +48,7 @@ std::string set_face(Run& run, int f, Arguments& arguments) {
         face.flux = arguments.quantity("the flux", quantity::heat_flux);
         text = fmt::format(" {} W/m^2", exact(face.flux));
     }
-    arguments.done();
     run.simulation.parameters.boundary[std::size_t(f)] = face;
-    update_boundary(run.simulation);
     return kind + text;
 }
 
@@ -62,7 +60,8 @@ Parameter face_parameter(int f) {
             [f](const ConsoleState&, const Run& run) {
                 return shown_face(run.simulation.parameters.boundary[std::size_t(f)]);
             },
-            [f](ConsoleState&, Run& run, Arguments& arguments) { return set_face(run, f, arguments); }};
+            [f](ConsoleState&, Run& run, Arguments& arguments) { return set_face(run, f, arguments); },
+            update_boundary};
 }
 
 } // namespace

@@ -31,7 +31,7 @@ const std::vector<Command>& command_table() {
         {"pool", "", "Length, width, depth and volume of the melt pool.", "pool", nothing, looks, do_pool},
         {"energy", "", "Where the energy went.", "energy", nothing, looks, do_energy},
         {"save", "[FILE]", "Writes a checkpoint, into the run folder unless FILE is given.", "save before.h5", file, controls, do_save},
-        {"restore", "FILE", "Puts the run back to a checkpoint of the same scenario. The journal becomes that of the checkpoint.", "restore before.h5", file, changes, do_restore},
+        {"restore", "FILE", "Puts the run back to a checkpoint of the same scenario, and pauses. The journal becomes that of the checkpoint.", "restore before.h5", file, changes, do_restore},
         {"layer", "thickness H [material M] [temperature T] [d10 D d50 D d90 D] [basis number|volume] [packing F] [seed N] [homogenised]", "Spreads a layer of powder on what is there; what is not given is as in the scenario's layers.", "layer thickness 40 um seed 2", layer_word, changes, do_layer},
         {"at", "TIME COMMAND", "Lets a command wait for that simulated time; a step ends there.", "at 0.5 ms power 250 W", command, changes, do_at},
         {"land", "TIME", "Has a step end at TIME exactly; --until leaves this in the journal.", "land 0.5 ms", nothing, changes, do_land},

@@ -37,12 +37,11 @@ std::string set_power(Run& run, Laser& laser, Arguments& arguments) {
 }
 
 std::string set_speed(Run& run, Laser& laser, Arguments& arguments) {
-    const double speed = arguments.quantity("the speed", quantity::speed);
-    require_positive(speed, "the speed", "m/s");
+    const double speed = read_scan_speed(arguments);
     if (speed_of(laser, run.simulation.time) == 0.0)
-        throw CommandError(fmt::format("the path of {} has no line left that could be run faster or slower; "
-                                       "`path line X Y speed V` adds one",
-                                       laser.name));
+        throw NotNow(fmt::format("the path of {} has no line left that could be run faster or slower; "
+                                 "`path line X Y speed V` adds one",
+                                 laser.name));
     laser.path = with_speed_from(laser.path, run.simulation.time, speed);
     return written(speed, quantity::speed);
 }
@@ -50,10 +49,12 @@ std::string set_speed(Run& run, Laser& laser, Arguments& arguments) {
 std::string set_spot(Run& run, Laser& laser, Arguments& arguments) {
     const double radius = arguments.quantity("the spot radius", quantity::length);
     require_positive(radius, "the spot radius", "m");
-    const double cell = run.simulation.grid.dx;
-    if (radius < cell)
-        throw CommandError(fmt::format("the spot radius must not be smaller than a cell, {}, not {}",
-                                       shown(cell, "m"), shown(radius, "m")));
+    const Grid& grid = run.simulation.grid;
+    const double largest = (grid.upper_corner() - grid.origin).maxCoeff();
+    if (radius < grid.dx || radius > largest)
+        throw CommandError(fmt::format(
+            "the spot radius must lie between a cell, {}, and the size of the domain, {}; it is {}",
+            shown(grid.dx, "m"), shown(largest, "m"), shown(radius, "m")));
     laser.spot_radius = radius;
     return written(radius, quantity::length);
 }
@@ -88,13 +89,13 @@ const std::vector<LaserParameter>& table() {
          [](const Laser& l, double t) { return shown(power_of(l, t), "W"); },
          set_power},
         {"speed",
-         "m/s, above 0",
+         "m/s, above 0, up to 100",
          "Speed of all lines with light that are left of the path.",
          {},
          [](const Laser& l, double t) { return shown(speed_of(l, t), "m/s"); },
          set_speed},
         {"spot_radius",
-         "m, a cell or more",
+         "m, from a cell to the domain",
          "1/e^2 radius of the beam.",
          {},
          [](const Laser& l, double) { return shown(l.spot_radius, "m"); },
@@ -115,6 +116,17 @@ const std::vector<LaserParameter>& table() {
 }
 
 } // namespace
+
+double read_scan_speed(Arguments& arguments, const std::vector<std::string>& keywords) {
+    constexpr double fastest = 100.0; // m/s, several times what scanners do
+    const double speed = arguments.quantity("the speed", quantity::speed, keywords);
+    require_positive(speed, "the speed", "m/s");
+    if (speed > fastest)
+        throw CommandError(
+            fmt::format("the speed must be at most {}, not {}; is a unit missing, as in 800 mm/s?",
+                        shown(fastest, "m/s"), shown(speed, "m/s")));
+    return speed;
+}
 
 std::vector<Parameter> laser_parameters(const std::vector<Laser>& lasers) {
     std::vector<Parameter> parameters;

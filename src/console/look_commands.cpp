@@ -14,6 +14,8 @@ namespace meltscope {
 std::string do_snapshot(Call& call) {
     Run& run = call.run;
     if (call.arguments.empty()) {
+        if (call.rehearsal)
+            return {};
         run.wanted.output = run.wanted.picture = true;
         if (run.hand_out_wanted)
             run.hand_out_wanted();
@@ -28,6 +30,8 @@ std::string do_snapshot(Call& call) {
         throw CommandError(fmt::format("a picture is a .png file, not {}", file.string()));
     if (!call.console.host.write_picture)
         throw CommandError("this run draws no pictures");
+    if (call.rehearsal)
+        return {};
     call.console.host.write_picture(run, view, file);
     return fmt::format("{}: {} at step {}", file.string(), view, run.simulation.step);
 }
@@ -43,11 +47,14 @@ std::string do_probe(Call& call) {
         require_between(at[axis], low[axis], high[axis], std::string(1, "xyz"[axis]), "m");
     const Probe found = probe(call.run.simulation, at);
     const std::string distance = shown(std::abs(found.phi), "m");
+    const std::string place =
+        std::abs(found.phi) < 1e-3 * grid.dx
+            ? "at the surface"
+            : fmt::format("{} {} the surface", distance, found.phi < 0.0 ? "below" : "above");
     if (std::isnan(found.temperature))
         return fmt::format("no material near there; the surface is {} away", distance);
-    return fmt::format("T = {:.6g} K, {} {} the surface (step {}, t = {})", found.temperature, distance,
-                       found.phi <= 0.0 ? "below" : "above", call.run.simulation.step,
-                       shown(call.run.simulation.time, "s"));
+    return fmt::format("T = {:.6g} K, {} (step {}, t = {})", found.temperature, place,
+                       call.run.simulation.step, shown(call.run.simulation.time, "s"));
 }
 
 namespace {
@@ -81,6 +88,8 @@ std::string pools_above(const Snapshot& snapshot, double isotherm) {
 
 std::string do_pool(Call& call) {
     call.arguments.done();
+    if (call.rehearsal)
+        return {};
     const Snapshot snapshot = take_snapshot(call.run.simulation, ParticleSelection::none);
     std::string text;
     for (const PoolFigures& pool : snapshot.pools)
@@ -91,6 +100,8 @@ std::string do_pool(Call& call) {
 
 std::string do_energy(Call& call) {
     call.arguments.done();
+    if (call.rehearsal)
+        return {};
     balance(call.run.simulation);
     const Ledger& ledger = call.run.simulation.ledger;
     std::string text;

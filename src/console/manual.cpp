@@ -17,8 +17,29 @@ std::string escaped(std::string text) {
     return text;
 }
 
-std::string first_sentence(const std::string& help) {
-    return help.substr(0, std::min(help.find(". "), help.find("; ")));
+/// The first sentence, without its full stop.
+std::string in_short(const std::string& help) {
+    const std::string sentence = help.substr(0, std::min(help.find(". "), help.find("; ")));
+    return sentence.substr(0, sentence.size() - (sentence.ends_with('.') ? 1 : 0));
+}
+
+/// Breaks a text at blanks into rows that fit any terminal; those after the first are indented.
+std::string wrapped(const std::string& text, std::size_t indent) {
+    constexpr std::size_t columns = 79;
+    std::string rows, row;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t begin = text.find_first_not_of(' ', at);
+        const std::size_t end = std::min(text.find(' ', begin), text.size());
+        const std::string word = text.substr(at, end - at); // with the blanks before it
+        if (row.size() + word.size() > columns && !row.empty()) {
+            rows += row + '\n';
+            row = std::string(indent, ' ') + text.substr(begin, end - begin);
+        } else {
+            row += word;
+        }
+        at = end;
+    }
+    return rows + row;
 }
 
 } // namespace
@@ -26,12 +47,13 @@ std::string first_sentence(const std::string& help) {
 std::string help_text() {
     std::string text;
     for (const Command& command : command_table())
-        text += fmt::format("{:<9} {}\n", command.name, first_sentence(command.help));
-    return text + "help COMMAND tells more. Beginnings that mean one thing are enough; Tab completes.";
+        text += wrapped(fmt::format("{:<9} {}", command.name, in_short(command.help)), 10) + '\n';
+    return text + "help COMMAND tells more. Unambiguous beginnings are enough; Tab completes.";
 }
 
 std::string help_text(const Command& command) {
-    return fmt::format("{}\n  {}\n  for example: {}", with_syntax(command), command.help, command.example);
+    return fmt::format("{}\n{}\n  for example: {}", wrapped(with_syntax(command), command.name.size() + 1),
+                       wrapped("  " + command.help, 2), command.example);
 }
 
 std::string console_manual() {

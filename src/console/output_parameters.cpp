@@ -73,37 +73,24 @@ std::string set_checkpoint_every(ConsoleState&, Run& run, Arguments& arguments) 
     return written(every, quantity::time);
 }
 
-/// Puts picture settings in force; they stay as they were if the pictures refuse them.
-void put(ConsoleState& console, const RenderSettings& settings) {
-    if (console.host.set_render)
-        console.host.set_render(settings);
-    console.render = settings;
-}
-
 std::string set_views(ConsoleState& console, Run&, Arguments& arguments) {
-    RenderSettings settings = console.render;
-    settings.views.clear();
+    std::vector<std::string>& views = console.render.views;
+    views.clear();
     do {
         const std::string view = arguments.choice("the view", view_names());
-        if (std::find(settings.views.begin(), settings.views.end(), view) == settings.views.end())
-            settings.views.push_back(view);
+        if (std::find(views.begin(), views.end(), view) == views.end())
+            views.push_back(view);
     } while (!arguments.empty());
-    put(console, settings);
-    return fmt::format("{}", fmt::join(settings.views, " "));
+    return fmt::format("{}", fmt::join(views, " "));
 }
 
 std::string set_field(ConsoleState& console, Run&, Arguments& arguments) {
-    RenderSettings settings = console.render;
-    settings.field = arguments.choice("the field", console.host.fields);
-    put(console, settings);
-    return settings.field;
+    return console.render.field = arguments.choice("the field", console.host.fields);
 }
 
 std::string set_color_range(ConsoleState& console, Run&, Arguments& arguments) {
-    RenderSettings settings = console.render;
     if (arguments.take("auto")) {
-        settings.color_range.reset();
-        put(console, settings);
+        console.render.color_range.reset();
         return "auto";
     }
     const double low = arguments.quantity("the cold end", quantity::temperature);
@@ -111,23 +98,16 @@ std::string set_color_range(ConsoleState& console, Run&, Arguments& arguments) {
     if (!(low < high))
         throw CommandError(fmt::format("the cold end must lie below the hot end, not at {} and {}",
                                        shown(low, "K"), shown(high, "K")));
-    settings.color_range = {low, high};
-    put(console, settings);
+    console.render.color_range = {low, high};
     return fmt::format("{} K {} K", exact(low), exact(high));
 }
 
 std::string set_colormap(ConsoleState& console, Run&, Arguments& arguments) {
-    RenderSettings settings = console.render;
-    settings.colormap = arguments.choice("the colour map", colormap_names());
-    put(console, settings);
-    return settings.colormap;
+    return console.render.colormap = arguments.choice("the colour map", colormap_names());
 }
 
 std::string set_background(ConsoleState& console, Run&, Arguments& arguments) {
-    RenderSettings settings = console.render;
-    settings.background = arguments.choice("the background", {"dark", "light"});
-    put(console, settings);
-    return settings.background;
+    return console.render.background = arguments.choice("the background", {"dark", "light"});
 }
 
 } // namespace

@@ -16,23 +16,41 @@ std::string set_parameter(Call& call, const Parameter& parameter) {
         throw CommandError(fmt::format("{} needs a value: {}; it is {}", parameter.name, parameter.values,
                                        parameter.get(call.console, call.run)));
     Simulation& simulation = call.run.simulation;
+    ConsoleState& console = call.console;
+    const auto show = [&] {
+        if (console.host.set_render)
+            console.host.set_render(console.render);
+    };
     const Steering before = steering_of(simulation.parameters, call.run.schedule);
-    const RenderSettings render_before = call.console.render;
-    const std::string old_value = parameter.get(call.console, call.run);
+    const RenderSettings render_before = console.render;
+    const std::string old_value = parameter.get(console, call.run);
     std::string value;
+    bool renewing = false, showing = false;
     try {
-        value = parameter.set(call.console, call.run, call.arguments);
+        value = parameter.set(console, call.run, call.arguments);
         call.arguments.done();
+        if (call.rehearsal)
+            return {};
+        if (parameter.renew) {
+            renewing = true;
+            parameter.renew(simulation);
+        }
+        if (console.render != render_before) {
+            showing = true;
+            show();
+        }
     } catch (...) {
         apply_steering(before, simulation.parameters, call.run.schedule);
-        if (call.console.render != render_before && call.console.host.set_render)
-            call.console.host.set_render(render_before);
-        call.console.render = render_before;
+        console.render = render_before;
+        if (renewing)
+            parameter.renew(simulation);
+        if (showing)
+            show();
         throw;
     }
     call.journal = fmt::format("set {} {}", parameter.name, value);
     return fmt::format("{}: {} -> {} (step {}, t = {})", parameter.name, old_value,
-                       parameter.get(call.console, call.run), simulation.step, shown(simulation.time, "s"));
+                       parameter.get(console, call.run), simulation.step, shown(simulation.time, "s"));
 }
 
 /// The laser that a short form means: the only one, or the one named first.
@@ -55,7 +73,7 @@ std::string switch_laser(Call& call, const char* value) {
     const std::string name = laser_prefix(call) + "on";
     call.arguments.done();
     Arguments given({value}, call.console.units);
-    Call of_set{call.console, call.run, given, {}, false};
+    Call of_set{call.console, call.run, given, {}, false, call.rehearsal};
     const std::string text =
         set_parameter(of_set, find_parameter(call.run.simulation.parameters.lasers, name));
     call.journal = of_set.journal;

@@ -19,6 +19,8 @@ inline constexpr double infinite = std::numeric_limits<double>::infinity();
 /// A value as the journal keeps it.
 std::string written(double value, const Quantity& quantity);
 std::string on_off(bool on);
+/// A speed above zero that a scanner could move a beam at, m/s.
+double read_scan_speed(Arguments& arguments, const std::vector<std::string>& keywords = {});
 /// A time above zero, s.
 double positive_time(Arguments& arguments, const std::string& what);
 

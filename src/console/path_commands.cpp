@@ -1,6 +1,8 @@
 #include "meltscope/beam/path_file.hpp"
 #include "meltscope/console/commands.hpp"
 
+#include "parameter_parts.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,7 +68,7 @@ Options read_options(Arguments& arguments, bool takes_speed, bool takes_light) {
     Options options;
     while (!arguments.empty()) {
         if (takes_speed && arguments.take("speed"))
-            options.speed = arguments.quantity("the speed", quantity::speed, keywords);
+            options.speed = read_scan_speed(arguments, keywords);
         else if (takes_light && arguments.take("power"))
             options.power = arguments.quantity("the power", quantity::power, keywords);
         else if (takes_light && arguments.take("off"))
@@ -97,23 +99,25 @@ std::string summary(const Run& run, const Laser& laser) {
                        rest.segments.size() == 1 ? "" : "s", shown(path_end_time(rest), "s"));
 }
 
+std::string described(const PathSegment& segment) {
+    const std::string light = !segment.laser_on ? ", no light"
+                              : segment.power   ? fmt::format(", {}", shown(*segment.power, "W"))
+                                                : std::string();
+    if (segment.kind == PathSegment::Kind::line)
+        return fmt::format("line to {} at {}{}", in_mm(segment.end), shown(segment.speed, "m/s"), light);
+    if (segment.duration == 0.0) // a jump
+        return fmt::format("goto {}", in_mm(segment.end));
+    return fmt::format("dwell at {} for {}{}", in_mm(segment.end), shown(segment.duration, "s"), light);
+}
+
 std::string show(const Run& run, const Laser& laser) {
     const double time = run.simulation.time;
     const ScanPath rest = path_from(laser.path, time);
     std::string text =
         fmt::format("beam at {}; {}", in_mm(beam_at(laser.path, time).position), summary(run, laser));
     constexpr std::size_t most = 20;
-    for (std::size_t n = 0; n < std::min(most, rest.segments.size()); ++n) {
-        const PathSegment& segment = rest.segments[n];
-        const std::string light = !segment.laser_on ? ", no light"
-                                  : segment.power   ? fmt::format(", {}", shown(*segment.power, "W"))
-                                                    : std::string();
-        text += segment.kind == PathSegment::Kind::line
-                    ? fmt::format("\n{:>3}  line to {} at {}{}", n + 1, in_mm(segment.end),
-                                  shown(segment.speed, "m/s"), light)
-                    : fmt::format("\n{:>3}  dwell at {} for {}{}", n + 1, in_mm(segment.end),
-                                  shown(segment.duration, "s"), light);
-    }
+    for (std::size_t n = 0; n < std::min(most, rest.segments.size()); ++n)
+        text += fmt::format("\n{:>3}  {}", n + 1, described(rest.segments[n]));
     if (rest.segments.size() > most)
         text += fmt::format("\n     and {} more", rest.segments.size() - most);
     return text;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <utility>
 
 /// Parameters of the physics and of the time step.
 namespace meltscope {
@@ -13,30 +12,16 @@ std::string shown_or(const std::optional<double>& value, const char* unit, const
     return value ? shown(*value, unit) : otherwise;
 }
 
-/// Puts changed losses in force; they stay as they were if the solver refuses them.
-void put(Run& run, Arguments& arguments, const PhysicsOptions& changed) {
-    arguments.done();
-    PhysicsOptions& physics = run.simulation.parameters.physics;
-    const PhysicsOptions before = std::exchange(physics, changed);
-    try {
-        update_losses(run.simulation);
-    } catch (...) {
-        physics = before;
-        update_losses(run.simulation);
-        throw;
-    }
-}
-
 std::string switch_loss(Run& run, Arguments& arguments, bool PhysicsOptions::*loss, const std::string& name) {
-    PhysicsOptions changed = run.simulation.parameters.physics;
-    changed.*loss = arguments.on_or_off(name);
-    if (changed.reabsorption && !changed.radiation)
-        throw CommandError(
+    PhysicsOptions& physics = run.simulation.parameters.physics;
+    physics.*loss = arguments.on_or_off(name);
+    if (physics.reabsorption && !physics.radiation)
+        throw NotNow(
             name == "physics.radiation"
                 ? "physics.reabsorption needs physics.radiation; switch physics.reabsorption off first"
                 : "physics.reabsorption needs physics.radiation; switch physics.radiation on first");
-    put(run, arguments, changed);
-    return on_off(changed.*loss);
+    check_losses(run.simulation.parameters);
+    return on_off(physics.*loss);
 }
 
 std::string set_radiation(ConsoleState&, Run& run, Arguments& arguments) {
@@ -52,19 +37,17 @@ std::string set_reabsorption(ConsoleState&, Run& run, Arguments& arguments) {
 }
 
 std::string set_convection(ConsoleState&, Run& run, Arguments& arguments) {
-    PhysicsOptions changed = run.simulation.parameters.physics;
-    changed.convection = arguments.quantity("physics.convection", quantity::heat_transfer_coefficient);
-    require_between(changed.convection, 0.0, infinite, "physics.convection", "W/m^2/K");
-    put(run, arguments, changed);
-    return written(changed.convection, quantity::heat_transfer_coefficient);
+    double& convection = run.simulation.parameters.physics.convection;
+    convection = arguments.quantity("physics.convection", quantity::heat_transfer_coefficient);
+    require_between(convection, 0.0, infinite, "physics.convection", "W/m^2/K");
+    return written(convection, quantity::heat_transfer_coefficient);
 }
 
 std::string set_ambient(ConsoleState&, Run& run, Arguments& arguments) {
-    PhysicsOptions changed = run.simulation.parameters.physics;
-    changed.ambient = arguments.quantity("physics.ambient", quantity::temperature);
-    require_positive(changed.ambient, "physics.ambient", "K");
-    put(run, arguments, changed);
-    return written(changed.ambient, quantity::temperature);
+    double& ambient = run.simulation.parameters.physics.ambient;
+    ambient = arguments.quantity("physics.ambient", quantity::temperature);
+    require_positive(ambient, "physics.ambient", "K");
+    return written(ambient, quantity::temperature);
 }
 
 std::string set_quiescent_tolerance(ConsoleState&, Run& run, Arguments& arguments) {
@@ -141,31 +124,36 @@ std::vector<Parameter> physics_parameters() {
          "Radiation of the free surface.",
          {"on", "off"},
          [](State, const Run& run) { return on_off(physics(run).radiation); },
-         set_radiation},
+         set_radiation,
+         update_losses},
         {"physics.evaporation",
          "on or off",
          "Heat lost to evaporation.",
          {"on", "off"},
          [](State, const Run& run) { return on_off(physics(run).evaporation); },
-         set_evaporation},
+         set_evaporation,
+         update_losses},
         {"physics.reabsorption",
          "on or off",
          "Radiation between surfaces that see each other.",
          {"on", "off"},
          [](State, const Run& run) { return on_off(physics(run).reabsorption); },
-         set_reabsorption},
+         set_reabsorption,
+         update_losses},
         {"physics.convection",
          "W/m^2/K, 0 or more",
          "Heat transfer from the free surface to the surroundings.",
          {},
          [](State, const Run& run) { return shown(physics(run).convection, "W/m^2/K"); },
-         set_convection},
+         set_convection,
+         update_losses},
         {"physics.ambient",
          "K, above 0",
          "Temperature of the surroundings.",
          {},
          [](State, const Run& run) { return shown(physics(run).ambient, "K"); },
-         set_ambient},
+         set_ambient,
+         update_losses},
         {"physics.quiescent_tolerance",
          "K, 0 to 10",
          "Where all is still at its start temperature within this, no work is done.",

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <mutex>
 #include <optional>
@@ -15,6 +16,8 @@ namespace {
 constexpr std::size_t longest_line = 1 << 16;
 /// ms until a person is asked for the next line, if the last one got no answer.
 constexpr int prompt_delay = 150;
+/// Until a line that could not be taken is given again.
+constexpr std::chrono::milliseconds retry_delay{20};
 
 class PlainPrompt : public Prompt {
   public:
@@ -116,8 +119,8 @@ class PlainPrompt : public Prompt {
         if (std::exchange(too_long_, false))
             line_ = line_.substr(0, 60) + "... (a line too long)";
         const std::string line = std::exchange(line_, {});
-        if (callbacks_.line)
-            callbacks_.line(line);
+        while (callbacks_.line && !callbacks_.line(line) && !person_ && !ending_)
+            std::this_thread::sleep_for(retry_delay);
     }
 
     std::string prompt_;

@@ -29,6 +29,8 @@ const char* name_of(StepLimit limit) {
 
 /// Sets the run going towards a new goal.
 void go(Call& call, std::optional<std::int64_t> step, std::optional<double> time) {
+    if (call.rehearsal)
+        return;
     Run& run = call.run;
     if (run.simulation.time >= run.simulation.parameters.time.end)
         throw CommandError(
@@ -58,24 +60,7 @@ std::string go_until(Call& call, double time) {
     return fmt::format("running from {} until {}", now(call.run), shown(time, "s"));
 }
 
-/// Commands that must not wait: a later one would depend on files that may have changed, or never end.
-bool may_wait(const std::string& name) {
-    for (const char* no : {"at", "source", "restore", "record", "land", "adopt", "detach"})
-        if (name == no)
-            return false;
-    return true;
-}
-
-bool writes_file(const std::string& name) {
-    return name == "save" || name == "snapshot";
-}
-
 } // namespace
-
-std::string without_file_to_write(const std::string& line) {
-    const std::vector<std::string> words = split_words(line);
-    return !words.empty() && writes_file(words[0]) ? words[0] : line;
-}
 
 std::filesystem::path file_to_write(Call& call) {
     if (call.arguments.empty())
@@ -162,6 +147,8 @@ std::string do_until(Call& call) {
 
 std::string do_pause(Call& call) {
     call.arguments.done();
+    if (call.rehearsal)
+        return {};
     const bool was_running = call.console.running;
     call.console.running = false;
     return fmt::format("{} at {}", was_running ? "paused" : "is paused", now(call.run));
@@ -173,35 +160,6 @@ std::string do_continue(Call& call) {
         return fmt::format("is running, {}", now(call.run));
     go(call, call.console.goal.step, call.console.goal.time);
     return fmt::format("going on from {}", now(call.run));
-}
-
-std::string do_at(Call& call) {
-    Arguments& arguments = call.arguments;
-    Run& run = call.run;
-    std::vector<std::string> names;
-    for (const Command& command : command_table())
-        names.push_back(command.name);
-    const double time = arguments.quantity("the time", quantity::time, names);
-    require_between(time, 0.0, never, "the time", "s");
-    const Command& command = find_command(arguments.word("the command"));
-    if (!may_wait(command.name))
-        throw CommandError(fmt::format("`{}` cannot wait for a time", command.name));
-    const std::string rest = arguments.rest();
-    std::string line = command.name + (rest.empty() ? "" : " " + rest);
-    if (call.console.from_journal && line != without_file_to_write(line))
-        throw CommandError("a journal names no file to write");
-    if (command.name == "path")
-        line = with_path_file_inlined(line);
-    if (time < run.simulation.time && !same_instant(time, run.simulation.time))
-        throw CommandError(fmt::format("{} has passed, it is {}", shown(time, "s"), now(run)));
-    std::vector<WaitingCommand>& waiting = call.console.waiting;
-    const auto place = std::upper_bound(waiting.begin(), waiting.end(), time,
-                                        [](double t, const WaitingCommand& w) { return t < w.time; });
-    waiting.insert(place, {time, line, call.console.must_succeed});
-    call.journal = fmt::format("at {} s {}", exact(time), without_file_to_write(line));
-    const bool never_comes = time > run.simulation.parameters.time.end;
-    return fmt::format("waits for {}: {}{}", shown(time, "s"), line,
-                       never_comes ? " (the run ends before)" : "");
 }
 
 std::string do_land(Call& call) {
@@ -219,6 +177,8 @@ std::string do_land(Call& call) {
 
 std::string do_quit(Call& call) {
     call.arguments.done();
+    if (call.rehearsal)
+        return {};
     if (at_end_of_run(call.run)) {
         call.console.leaves = true;
         return {};

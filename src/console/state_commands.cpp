@@ -100,9 +100,11 @@ const std::vector<std::string>& layer_keywords() {
 std::string do_save(Call& call) {
     std::filesystem::path file = file_to_write(call);
     call.arguments.done();
+    if (file.empty() && call.console.host.folder.empty())
+        throw CommandError("there is no run folder; name a file: save FILE");
+    if (call.rehearsal)
+        return {};
     if (file.empty()) {
-        if (call.console.host.folder.empty())
-            throw CommandError("there is no run folder; name a file: save FILE");
         file = RunPaths{call.console.host.folder}.checkpoint(call.run.simulation.step);
         std::filesystem::create_directories(file.parent_path());
     }
@@ -141,17 +143,20 @@ std::string do_restore(Call& call) {
     run.layers_laid = back.layers_laid;
     run.solidification = std::move(back.solidification);
     console.goal = {console.goal.number + 1, std::nullopt, std::nullopt};
+    console.running = false; // to be looked at before it goes on
     if (console.host.restored)
         console.host.restored(run);
     run.handed_out = {}; // what was written of this instant has been dropped
     run.wanted.output = run.wanted.output || due_now(run).output;
     run.wanted.picture = run.wanted.picture || due_now(run).picture;
-    return fmt::format("back at step {}, t = {}; the journal is that of the checkpoint", run.simulation.step,
-                       shown(run.simulation.time, "s"));
+    return fmt::format("paused, back at step {}, t = {}; the journal is that of the checkpoint",
+                       run.simulation.step, shown(run.simulation.time, "s"));
 }
 
 std::string do_layer(Call& call) {
     const PowderLayer layer = read_layer(call);
+    if (call.rehearsal)
+        return {};
     const std::int64_t added = add_layer(call.run.simulation, layer);
     call.journal = written(call, layer);
     return fmt::format("{} particles added in a layer of {} (step {}, t = {})", added,

@@ -1,9 +1,8 @@
 #pragma once
 
-#include "meltscope/console/console_state.hpp"
 #include "meltscope/io/run_state.hpp"
-#include "meltscope/scenario/scenario_file.hpp"
-#include "meltscope/scenario/setup.hpp"
+
+#include "../started_run.hpp"
 
 #include <algorithm>
 #include <string>
@@ -82,22 +81,13 @@ inline Scenario read_small() {
 }
 
 inline Run start_small() {
-    const Scenario scenario = read_small();
-    Run run;
-    run.simulation = make_simulation(run_parameters(scenario), scenario_grid(scenario),
-                                     fill_scenario(scenario), lattice_of(scenario));
-    run.schedule.output = {scenario.output.every, std::nullopt};
+    Run run = testing::started(read_small());
     run.solidification = begin_solidification(run.simulation);
     return run;
 }
 
 inline ConsoleHost small_host() {
-    const Scenario scenario = read_small();
-    ConsoleHost host;
-    host.scenario = to_toml(scenario);
-    host.parameters = run_parameters(scenario);
-    host.fields = {"temperature", "phi"};
-    return host;
+    return testing::host_for(read_small());
 }
 
 /// One step as the run loop takes it: towards the next instant that the console waits for.

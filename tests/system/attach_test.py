@@ -66,6 +66,13 @@ class Attach(Steered):
         self.assert_same_end(self.folder / "run",
                              self.replay("again", self.folder / "run" / "journal.txt", "--set", "time.end=40 ms", code=3))
 
+    def test_a_script_of_more_lines_than_may_wait_is_carried_out_to_its_end(self):
+        self.start()
+        result = self.attach(["get laser.power"] * 2500 + ["power 200"])
+        self.assertEqual(result.returncode, 0, result.stdout[-500:] + result.stderr)
+        self.assertEqual(result.stdout.count("laser.power = 179.2 W"), 2500)
+        self.assertIn("179.2 W -> 200 W", result.stdout)
+
     def test_the_socket_is_the_owners_alone(self):
         self.start()
         mode = stat.S_IMODE((self.folder / "run" / "console.sock").stat().st_mode)

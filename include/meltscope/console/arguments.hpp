@@ -17,6 +17,11 @@ struct CommandError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A command that only the present state of the run forbids: later it may be right.
+struct NotNow : CommandError {
+    using CommandError::CommandError;
+};
+
 /// Splits a line at blanks and commas. "..." and '...' keep blanks together (and are dropped), # begins a
 /// comment.
 /// Throws CommandError for a quote that is not closed.

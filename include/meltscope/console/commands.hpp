@@ -26,6 +26,9 @@ struct Call {
     Arguments& arguments;
     std::string journal; ///< the handler's: the command as a replay will find it; empty if nothing changed
     bool starts = false; ///< the handler's: set the run going
+    /// The words are to be judged, and nothing is to be done that cannot be undone by putting the steering
+    /// and the pictures' settings back.
+    bool rehearsal = false;
 };
 
 /// One row of the table from which parser, help, completion and manual come.

@@ -22,7 +22,8 @@ class Prompt;
 class LineEditor {
   public:
     struct Callbacks {
-        std::function<void(const std::string& line)> line;
+        /// False: it cannot be taken now. A line from a pipe is then kept and given again a little later.
+        std::function<bool(const std::string& line)> line;
         std::function<void()> interrupt; ///< Ctrl-C at a terminal; on an empty line if lines are edited
         std::function<void()> end;       ///< end of input: Ctrl-D on an empty line, or the end of a pipe
         /// The words that may stand at the end of the text before the cursor; may be empty.

@@ -16,8 +16,11 @@ struct Parameter {
     std::string help;
     std::vector<std::string> words; ///< that may stand as value, for completion
     std::function<std::string(const ConsoleState&, const Run&)> get;
-    /// Reads a value and puts it in force; returns it as the journal keeps it. Empty: can only be read.
+    /// Reads a value into the parameters of the run; returns it as the journal keeps it. Empty: can only be
+    /// read.
     std::function<std::string(ConsoleState&, Run&, Arguments&)> set;
+    /// Makes anew what the simulation has derived from it. Empty: nothing.
+    std::function<void(Simulation&)> renew = {};
 };
 
 /// The parameters of a run with these lasers. With one laser they are laser.power and so on, with several

@@ -8,17 +8,16 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 namespace meltscope {
 namespace {
 
+using testing::has;
 using testing::start_tiny;
 using testing::TemporaryFolder;
 using testing::tiny_host;
-
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 /// A console on a tiny run.
 struct Tiny : ::testing::Test {
@@ -56,6 +55,23 @@ TEST(ConsoleTable, every_command_has_help_an_example_that_names_it_and_a_handler
         EXPECT_TRUE(has(help_text(command), command.example));
         EXPECT_TRUE(has(help_text(), command.name));
     }
+}
+
+TEST(ConsoleTable, help_fits_terminals_of_eighty_columns_and_keeps_its_words) {
+    std::string all = help_text();
+    for (const Command& command : command_table()) {
+        const std::string text = help_text(command);
+        all += '\n' + text;
+        const auto words_of = [](const std::string& of) {
+            std::istringstream stream(of);
+            return std::vector<std::string>(std::istream_iterator<std::string>(stream), {});
+        };
+        const std::vector<std::string> shown = words_of(text), wanted = words_of(command.help);
+        EXPECT_NE(std::search(shown.begin(), shown.end(), wanted.begin(), wanted.end()), shown.end()) << text;
+    }
+    std::istringstream rows(all);
+    for (std::string row; std::getline(rows, row);)
+        EXPECT_LT(row.size(), 80u) << row;
 }
 
 TEST(ConsoleTable, what_users_were_promised_is_there_and_nothing_twice) {
@@ -162,7 +178,10 @@ TEST_F(ConsoleCommands, values_out_of_range_and_wrong_units_change_nothing) {
                              "power nan",
                              "spot 1 um",
                              "spot -3",
+                             "spot 85",
                              "speed 0",
+                             "speed 800",
+                             "path line 60 um 60 um speed 800",
                              "set laser.absorptivity 1.5",
                              "set laser.on perhaps",
                              "set time.cfl 0",
@@ -191,6 +210,27 @@ TEST_F(ConsoleCommands, values_out_of_range_and_wrong_units_change_nothing) {
                              "at 1 ms nothing",
                              "at 1 ms at 2 ms off",
                              "at -1 off",
+                             "at 1 ms power -1",
+                             "at 1 ms power 3 m",
+                             "at 1 ms spot 1 um",
+                             "at 1 ms off 3",
+                             "at 1 ms set laser.absorptivity 1.5",
+                             "at 1 ms set nothing 3",
+                             "at 1 ms set physics.transfer flip",
+                             "at 0.1 ms set time.end 0.1 ms",
+                             "at 0.1 ms until t=0.1 ms",
+                             "at 1 ms step 0",
+                             "at 1 ms set boundary.x_min warm",
+                             "at 1 ms view top nothing",
+                             "at 1 ms path line 1 1 speed 1",
+                             "at 1 ms path line 60 um 60 um",
+                             "at 1 ms path load /nowhere",
+                             "at 1 ms layer thickness 40 um",
+                             "at 1 ms probe 1 2 3",
+                             "at 1 ms save",
+                             "at 1 ms snapshot x.png",
+                             "at 1 ms get nothing",
+                             "at 1 ms help nothing",
                              "restore /nowhere",
                              "layer",
                              "layer thickness 1",
@@ -219,6 +259,50 @@ TEST_F(ConsoleCommands, values_out_of_range_and_wrong_units_change_nothing) {
                              "\"",
                              "history 3"})
         fails(line);
+}
+
+TEST_F(ConsoleCommands, what_waits_is_judged_when_it_is_given_and_done_when_it_is_due) {
+    int shown = 0;
+    console.host.set_render = [&](const RenderSettings&) { ++shown; };
+    steps(2);
+    const CheckpointData before = testing::kept(run);
+    const RenderSettings render_before = console.render;
+    for (const char* line :
+         {"at 50 us power 20", "at 50 us set physics.radiation on",
+          "at 50 us set boundary.x_min temperature 500", "at 50 us path line 60 um 60 um speed 1",
+          "at 50 us view top", "at 50 us step 3", "at 50 us pause",
+          "at 50 us layer thickness 55 um d10 30 um d50 40 um d90 50 um packing 0.3 seed 3",
+          "at 50 us snapshot", "at 50 us energy", "at 50 us quit"})
+        ok(line);
+    run.journal = before.journal; // which has them, and nothing else that changed
+    testing::expect_equal(testing::kept(run), before);
+    EXPECT_EQ(console.render, render_before);
+    EXPECT_EQ(shown, 0);
+    EXPECT_EQ(console.goal.number, 0);
+    EXPECT_TRUE(console.running);
+    EXPECT_FALSE(run.stop_reason);
+    EXPECT_FALSE(run.wanted.any());
+    while (run.simulation.time < 50e-6)
+        advance(run.simulation, 50e-6);
+    for (const Reply& reply : execute_due(console, run))
+        EXPECT_TRUE(reply.ok) << reply.text;
+    EXPECT_EQ(laser().power, 20.0);
+    EXPECT_EQ(shown, 1);
+    EXPECT_TRUE(run.stop_reason);
+}
+
+TEST_F(ConsoleCommands, what_only_the_present_state_forbids_may_wait_and_says_so) {
+    const std::string text = ok("at 1 ms speed 2"); // the path ends long before
+    EXPECT_TRUE(has(text, "as things stand it will fail: the path of red has no line left")) << text;
+    EXPECT_TRUE(has(ok("at 1 ms set physics.reabsorption on"), "switch physics.radiation on first"));
+    EXPECT_FALSE(has(ok("at 50 us speed 2"), "fail"));
+    EXPECT_EQ(console.waiting.size(), 3u);
+}
+
+TEST_F(ConsoleCommands, a_loss_that_the_material_has_no_data_for_is_refused_at_once) {
+    run.simulation.parameters.materials[0].emissivity.reset();
+    EXPECT_TRUE(has(fails("set physics.radiation on"), "emissivity"));
+    EXPECT_TRUE(has(fails("at 50 us set physics.radiation on"), "emissivity"));
 }
 
 TEST_F(ConsoleCommands, every_parameter_is_shown_and_most_can_be_set_to_what_the_journal_keeps) {
@@ -293,6 +377,23 @@ TEST_F(ConsoleCommands, the_beam_goes_on_from_where_it_is_when_its_path_is_edite
     EXPECT_TRUE(has(ok("path show"), "line to (0.02, 0.02, 0.06) mm at 100 mm/s"));
 }
 
+TEST_F(ConsoleCommands, a_path_is_shown_as_it_was_typed) {
+    ok("path clear");
+    ok("path line 100 um 60 um speed 800 mm/s power 12 W");
+    ok("path goto 60 um 60 um");
+    ok("path dwell 20 us off");
+    const std::string text = ok("path show");
+    EXPECT_TRUE(has(text, "2  goto (0.06, 0.06, 0.06) mm\n")) << text;
+    EXPECT_TRUE(has(text, "1  line to (0.1, 0.06, 0.06) mm at 800 mm/s, 12 W\n")) << text;
+    EXPECT_TRUE(has(text, "3  dwell at (0.06, 0.06, 0.06) mm for 20 us, no light")) << text;
+}
+
+TEST_F(ConsoleCommands, a_probe_says_where_the_surface_is) {
+    EXPECT_TRUE(has(ok("probe 80 um 60 um 60 um"), "K, at the surface"));
+    EXPECT_TRUE(has(ok("probe 80 um 60 um 40 um"), "um below the surface"));
+    EXPECT_TRUE(has(ok("probe 80 um 60 um 110 um"), "no material near there"));
+}
+
 TEST_F(ConsoleCommands, a_path_file_goes_into_the_journal_with_its_rows) {
     const TemporaryFolder folder;
     testing::put(folder / "path.txt",
@@ -358,6 +459,7 @@ TEST_F(ConsoleCommands, restore_puts_state_steering_journal_and_waiting_commands
     testing::expect_equal(testing::kept(run), before);
     ASSERT_EQ(console.waiting.size(), 1u);
     EXPECT_EQ(console.waiting[0].command, "power 30");
+    EXPECT_FALSE(console.running);
 }
 
 TEST_F(ConsoleCommands, a_layer_is_in_the_journal_with_all_that_a_replay_needs) {

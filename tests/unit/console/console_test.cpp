@@ -320,45 +320,49 @@ TEST(ConsoleScript, a_file_that_reads_itself_is_an_error) {
     EXPECT_TRUE(console.script_error());
 }
 
-TEST(ConsolePrompt, the_first_interrupt_pauses_the_second_stops) {
+/// A console on a run that goes, and what is heard of it.
+struct ConsolePrompt : ::testing::Test {
     meltscope::Run run = start_tiny();
-    Console console(tiny_host(), false);
+    Console console{tiny_host(), false};
     Heard heard;
+    RunConnections connections;
+
+    Console::Id open(Speaker speaker) {
+        speaker.answer = heard.listener();
+        return console.open(std::move(speaker));
+    }
+    RunOutcome go() {
+        connections.commands.push_back(console.source());
+        return run_to_end(run, connections);
+    }
+};
+
+TEST_F(ConsolePrompt, the_first_interrupt_pauses_the_second_stops) {
     Speaker speaker;
     speaker.keeps_run = true;
-    speaker.answer = heard.listener();
-    console.open(std::move(speaker));
-    RunConnections connections;
+    open(std::move(speaker));
     connections.commands.push_back({[&](meltscope::Run& r) {
         if (r.simulation.step == 3)
             console.interrupt();
     }});
-    connections.commands.push_back(console.source());
     std::thread user([&] {
         while (console.status_line().find("paused") == std::string::npos)
             std::this_thread::yield();
         console.interrupt();
     });
-    EXPECT_EQ(run_to_end(run, connections), RunOutcome::stopped);
+    EXPECT_EQ(go(), RunOutcome::stopped);
     user.join();
     EXPECT_EQ(run.simulation.step, 3);
     EXPECT_TRUE(run.journal.ends_with("quit\n"));
 }
 
-TEST(ConsolePrompt, those_who_look_on_cannot_change_the_run) {
-    meltscope::Run run = start_tiny();
-    Console console(tiny_host(), false);
-    Heard heard;
+TEST_F(ConsolePrompt, those_who_look_on_cannot_change_the_run) {
     Speaker speaker;
     speaker.may_change = false;
-    speaker.answer = heard.listener();
-    const Console::Id watcher = console.open(std::move(speaker));
-    console.say(watcher, "power 20");
-    console.say(watcher, "pause");
-    console.say(watcher, "get laser.power");
-    RunConnections connections;
-    connections.commands.push_back(console.source());
-    EXPECT_EQ(run_to_end(run, connections), RunOutcome::done);
+    const Console::Id watcher = open(std::move(speaker));
+    for (const char* line : {"power 20", "pause", "get laser.power"})
+        console.say(watcher, line);
+    EXPECT_EQ(go(), RunOutcome::done);
     EXPECT_EQ(run.journal, "");
     ASSERT_GE(heard.answers.size(), 3u);
     EXPECT_EQ(heard.answers[2], "get laser.power|laser.power = 10 W");

@@ -10,13 +10,10 @@
 namespace meltscope {
 namespace {
 
+using testing::has;
 using testing::start_tiny;
 using testing::TemporaryFolder;
 using testing::tiny_host;
-
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 /// Carries out what is to be replayed at the start.
 void replay(const std::string& journal) {

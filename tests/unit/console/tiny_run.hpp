@@ -1,9 +1,8 @@
 #pragma once
 
-#include "meltscope/console/console_state.hpp"
 #include "meltscope/io/run_state.hpp"
-#include "meltscope/scenario/scenario_file.hpp"
-#include "meltscope/scenario/setup.hpp"
+
+#include "../../started_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,26 +47,24 @@ max_step = 4e-6
 every = 40e-6
 )";
 
-inline Scenario tiny() {
-    return read_scenario_text(tiny_scenario);
+// Read and filled once: hundreds of sessions begin so.
+inline const Scenario& tiny() {
+    static const Scenario scenario = read_scenario_text(tiny_scenario);
+    return scenario;
 }
 
 inline Run start_tiny() {
-    const Scenario scenario = tiny();
-    Run run;
-    run.simulation = make_simulation(run_parameters(scenario), scenario_grid(scenario),
-                                     fill_scenario(scenario), lattice_of(scenario));
-    run.schedule.output = {scenario.output.every, std::nullopt};
-    return run;
+    static const Run start = started(tiny());
+    return start;
 }
 
 inline ConsoleHost tiny_host() {
-    const Scenario scenario = tiny();
-    ConsoleHost host;
-    host.scenario = to_toml(scenario);
-    host.parameters = run_parameters(scenario);
-    host.fields = {"temperature", "phi"};
+    static const ConsoleHost host = host_for(tiny());
     return host;
+}
+
+inline bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
 }
 
 /// A run goes on from what a checkpoint holds.

@@ -2,8 +2,6 @@
 
 #include "meltscope/mpm/group_stencils.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -150,65 +148,56 @@ bool wanted(ParticleSelection selection, double phi_hat, double liquid_fraction)
     return false;
 }
 
-struct SampledRange {
-    ParticleSample sample;
-    std::int64_t liquid_particles = 0;
-};
-
-SampledRange sample_range(const Simulation& s, ParticleSelection selection, const Field& temperature,
-                          const Field& phi_hat, std::int64_t first, std::int64_t last) {
-    const Particles& particles = s.particles;
-    SampledRange range;
-    ParticleSample& sample = range.sample;
-    for (std::int64_t q = first; q < last; ++q) {
-        const std::int64_t at = particles.layout.place[q];
-        const EquationOfState& eos = s.eos[particles.material[q]];
-        const double fraction = eos.liquid_fraction(temperature[at]);
-        range.liquid_particles += fraction >= 1.0;
-        if (phi_hat.empty() || !wanted(selection, phi_hat[at], fraction))
-            continue;
-        const Vec3& x = particles.position[q];
-        sample.position.insert(sample.position.end(), {x[0], x[1], x[2]});
-        sample.temperature.push_back(temperature[at]);
-        sample.specific_energy.push_back(particles.specific_energy[at]);
-        sample.liquid_fraction.push_back(fraction);
-        sample.phi_hat.push_back(phi_hat[at]);
-        sample.id.push_back(particles.id[q]);
-        sample.material.push_back(particles.material[q]);
-    }
-    return range;
-}
-
-template <class T>
-void append(std::vector<T>& to, const std::vector<T>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-}
-
-/// Fills the snapshot's particles and counts the molten ones.
+/// Fills the snapshot's particles and counts the molten ones. The particles keep their order, however many
+/// threads choose among them.
 void sample_particles(const Simulation& s, ParticleSelection selection, const Field& node_phi_hat,
                       Snapshot& snapshot) {
     const Particles& particles = s.particles;
     const Field temperature = particle_temperatures(s.grid, particles, s.nodes);
-    const bool needs_phi = selection == ParticleSelection::surface || selection == ParticleSelection::melt ||
-                           selection == ParticleSelection::all;
-    const Field phi_hat = needs_phi ? interpolate_to_particles(s.grid, particles, node_phi_hat) : Field{};
-    const std::int64_t count = particles.count(), parts = omp_get_max_threads();
-    std::vector<SampledRange> ranges(parts);
-#pragma omp parallel for schedule(static)
-    for (std::int64_t n = 0; n < parts; ++n)
-        ranges[n] =
-            sample_range(s, selection, temperature, phi_hat, n * count / parts, (n + 1) * count / parts);
-    // In the order of the particles, however many parts there are.
+    const bool chooses = selection != ParticleSelection::none;
+    const Field phi_hat = chooses ? interpolate_to_particles(s.grid, particles, node_phi_hat) : Field{};
+
+    // Looked at where they lie in memory, taken in the order of their ids.
+    const std::vector<LaneGroup>& groups = particles.layout.groups;
+    std::vector<char> takes(chooses ? particles.layout.size() : 0);
+    std::int64_t liquid_particles = 0;
+#pragma omp parallel for schedule(static) reduction(+ : liquid_particles)
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const EquationOfState& eos = s.eos[groups[g].kind];
+        const std::int64_t first = groups[g].first_slot * lane_count;
+        for (std::int64_t at = first; at < first + groups[g].slots * lane_count; ++at) {
+            const double fraction = eos.liquid_fraction(temperature[at]);
+            liquid_particles += fraction >= 1.0 && particles.mass[at] > 0.0;
+            if (chooses)
+                takes[at] = wanted(selection, phi_hat[at], fraction);
+        }
+    }
+    snapshot.liquid_particles = liquid_particles;
+
+    std::vector<std::int64_t> taken;
+    for (std::int64_t q = 0; chooses && q < particles.count(); ++q)
+        if (takes[particles.layout.place[q]])
+            taken.push_back(q);
+    const std::int64_t count = std::int64_t(taken.size());
     ParticleSample& sample = snapshot.particles;
-    for (const SampledRange& range : ranges) {
-        snapshot.liquid_particles += range.liquid_particles;
-        append(sample.position, range.sample.position);
-        append(sample.temperature, range.sample.temperature);
-        append(sample.specific_energy, range.sample.specific_energy);
-        append(sample.liquid_fraction, range.sample.liquid_fraction);
-        append(sample.phi_hat, range.sample.phi_hat);
-        append(sample.id, range.sample.id);
-        append(sample.material, range.sample.material);
+    sample.position.resize(3 * count);
+    sample.temperature.resize(count);
+    sample.specific_energy.resize(count);
+    sample.liquid_fraction.resize(count);
+    sample.phi_hat.resize(count);
+    sample.id.resize(count);
+    sample.material.resize(count);
+#pragma omp parallel for schedule(static)
+    for (std::int64_t n = 0; n < count; ++n) {
+        const std::int64_t q = taken[n], at = particles.layout.place[q];
+        for (int axis = 0; axis < 3; ++axis)
+            sample.position[3 * n + axis] = particles.position[q][axis];
+        sample.temperature[n] = temperature[at];
+        sample.specific_energy[n] = particles.specific_energy[at];
+        sample.liquid_fraction[n] = s.eos[particles.material[q]].liquid_fraction(temperature[at]);
+        sample.phi_hat[n] = phi_hat[at];
+        sample.id[n] = particles.id[q];
+        sample.material[n] = particles.material[q];
     }
 }
 

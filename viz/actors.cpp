@@ -271,6 +271,12 @@ TrackActors::TrackActors(vtkRenderer* renderer)
     renderer->AddActor(light_);
 }
 
+void TrackActors::clip_paths(vtkPlane* plane) {
+    for (LineActor* path : {&path_to_come_, &path_done_}) {
+        path->mapper()->AddClippingPlane(plane);
+    }
+}
+
 void TrackActors::update(const Picture& picture, double view_size, double beam_height) {
     const Snapshot& snapshot = *picture.instant->snapshot;
     const Geometry& geometry = *picture.instant->geometry;

@@ -7,6 +7,7 @@
 
 #include <vtkActor.h>
 #include <vtkNew.h>
+#include <vtkPlane.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkRenderer.h>
@@ -32,6 +33,7 @@ class LineActor {
     explicit LineActor(vtkRenderer* renderer);
     void update(vtkPolyData* lines, const Rgb& color, double width, double opacity = 1.0);
     vtkActor* actor() { return actor_; }
+    vtkPolyDataMapper* mapper() { return mapper_; }
 
   private:
     vtkNew<vtkActor> actor_;
@@ -52,6 +54,8 @@ class TrackActors {
     /// `view_size`: what the view spans, m, for the length of dashes; `beam_height`: of the light above a
     /// spot, m, 0 for none.
     void update(const Picture& picture, double view_size, double beam_height);
+    /// Shows the paths on one side of the plane only, which has to live as long.
+    void clip_paths(vtkPlane* plane);
 
   private:
     LineActor moves_to_come_, moves_done_; ///< without light

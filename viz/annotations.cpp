@@ -23,7 +23,7 @@ Scaled length_unit(double metres) {
 
 std::string three_digits(double value) {
     const double size = std::abs(value);
-    return fmt::format("{:.{}f}", value, size >= 100.0 ? 0 : size >= 10.0 ? 1 : 2);
+    return fmt::format("{:.{}f}", value, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2);
 }
 
 std::string format_time(double seconds) {

@@ -382,7 +382,10 @@ vtkSmartPointer<vtkImageData> make_grid(const Snapshot& snapshot) {
 
 Instant make_instant(std::shared_ptr<const Snapshot> snapshot, std::shared_ptr<const Geometry>& geometry) {
     require_complete(*snapshot);
-    if (!geometry || geometry->phi != snapshot->phi) {
+    const auto same_surface = [&] {
+        return geometry->phi == snapshot->phi || *geometry->phi == *snapshot->phi;
+    };
+    if (!geometry || !same_surface()) {
         geometry = make_geometry(snapshot->nodes, snapshot->phi);
     }
     Instant instant;

@@ -65,7 +65,8 @@ struct Instant {
     PoolSurfaces pool;
 };
 
-/// `geometry` is kept by the caller from one instant to the next.
+/// `geometry` is kept by the caller from one instant to the next; it is made anew when the surface has
+/// changed.
 Instant make_instant(std::shared_ptr<const Snapshot> snapshot, std::shared_ptr<const Geometry>& geometry);
 
 } // namespace meltscope::viz

@@ -77,29 +77,35 @@ class TimeChart {
         }
         const double top = highest > 0.0 ? 1.08 * highest : 1.0;
         const double end = std::max(last, 1e-9) * (milliseconds ? 1e3 : 1e6);
-        style_axis(chart_->GetAxis(vtkAxis::BOTTOM), picture, milliseconds ? "time (ms)" : "time (µs)", end,
-                   4);
-        style_axis(chart_->GetAxis(vtkAxis::LEFT), picture, unit_, top, 4);
+        style_axis(chart_->GetAxis(vtkAxis::BOTTOM), picture, end, 4);
+        style_axis(chart_->GetAxis(vtkAxis::LEFT), picture, top, 4);
 
         // Room for half of the last number, which stands below the end of the axis.
         chart_->SetHiddenAxisBorder(static_cast<int>(std::lround(1.2 * picture.font)));
+        // Titles are drawn here: the chart's own keep a distance in pixels, too little in large pictures.
         const double heading = 1.1 * picture.font;
-        chart_->SetSize(vtkRectf(static_cast<float>(area.x - offset[0]),
-                                 static_cast<float>(area.y - offset[1]), static_cast<float>(area.width),
-                                 static_cast<float>(area.height - heading)));
+        constexpr double own_room = 12.0; // pixels that the chart keeps below its numbers in any case
+        const double footing = std::max(0.0, 0.9 * picture.font - own_room);
+        chart_->SetSize(
+            vtkRectf(static_cast<float>(area.x - offset[0]), static_cast<float>(area.y + footing - offset[1]),
+                     static_cast<float>(area.width), static_cast<float>(area.height - heading - footing)));
         draw_names(picture, area, canvas);
+        TextStyle style;
+        style.size = 0.8 * picture.font;
+        style.color = picture.theme->muted;
+        style.horizontal = Align::middle;
+        style.vertical = Align::low;
+        canvas.text({area.x + 0.5 * area.width, area.y}, milliseconds ? "time (ms)" : "time (µs)", style);
     }
 
   private:
-    static void style_axis(vtkAxis* axis, const Picture& picture, const std::string& title, double end,
-                           int ticks) {
+    static void style_axis(vtkAxis* axis, const Picture& picture, double end, int ticks) {
         const Theme& colors = *picture.theme;
-        for (vtkTextProperty* property : {axis->GetLabelProperties(), axis->GetTitleProperties()}) {
-            property->SetColor(colors.muted[0], colors.muted[1], colors.muted[2]);
-            property->SetFontSize(std::max(6, static_cast<int>(std::lround(0.8 * picture.font))));
-            property->SetBold(false);
-        }
-        axis->SetTitle(title);
+        vtkTextProperty* property = axis->GetLabelProperties();
+        property->SetColor(colors.muted[0], colors.muted[1], colors.muted[2]);
+        property->SetFontSize(std::max(6, static_cast<int>(std::lround(0.8 * picture.font))));
+        property->SetBold(false);
+        axis->SetTitle("");
         axis->GetPen()->SetColorF(colors.muted[0], colors.muted[1], colors.muted[2]);
         axis->GetPen()->SetWidth(static_cast<float>(0.6 * picture.line));
         axis->GetGridPen()->SetColorF(colors.panel_edge[0], colors.panel_edge[1], colors.panel_edge[2]);
@@ -120,13 +126,15 @@ class TimeChart {
         TextStyle style;
         style.size = 0.9 * picture.font;
         style.vertical = Align::high;
-        double x = area.x + 0.6 * picture.font;
+        double x = area.x;
         for (std::size_t i = 0; i < series_.size(); ++i) {
             style.color = picture.theme->series.at(i);
             const std::string name = several ? series_[i].name_of_several : series_[i].name;
             canvas.text({x, area.y + area.height - 0.3 * picture.font}, name, style);
             x += Canvas::extent(name, style)[0] + picture.font;
         }
+        style.color = picture.theme->muted;
+        canvas.text({x, area.y + area.height - 0.3 * picture.font}, "(" + unit_ + ")", style);
     }
 
     std::string unit_;

@@ -27,6 +27,7 @@ class PoolPanel : public Panel {
         for (SurfaceActor* part : {&isotherm_, &cap_}) {
             part->mapper()->AddClippingPlane(near_half_);
         }
+        track_.clip_paths(path_half_);
     }
 
     void update(const Picture& picture, const Rect& area, Canvas& canvas) override {
@@ -46,6 +47,10 @@ class PoolPanel : public Panel {
             cut->SetOrigin(origin.data());
             cut->SetNormal(normal.data());
         }
+        // Nothing lies below the paths of the half that is cut away, but the track itself is to be seen.
+        const Vec3 beside_track = plane.origin - 1.5 * geometry.nodes.spacing * away;
+        path_half_->SetOrigin(beside_track.data());
+        path_half_->SetNormal(away.data());
         surface_.update(picture.surface, picture);
         walls_.update(picture.walls, picture);
         isotherm_.update(picture.instant->pool.isotherm, picture);
@@ -55,7 +60,8 @@ class PoolPanel : public Panel {
                                          picture.instant->pool.isotherm->GetNumberOfCells() > 0);
         }
 
-        const double bottom = std::max(plane.origin.z() - 1.5 * extent_.depth, geometry.lower.z());
+        const double top = ground(plane, geometry, 2.0 * extent_.depth);
+        const double bottom = std::max(top - 1.5 * extent_.depth, geometry.lower.z());
         const std::array<double, 4> stretch{-4.0 * extent_.length, 3.0 * extent_.length, geometry.lower.z(),
                                             geometry.upper.z()};
         const auto section = make_section(picture, plane, stretch);
@@ -66,16 +72,21 @@ class PoolPanel : public Panel {
                         picture.line);
         solidus_.actor()->SetUserMatrix(plane.matrix());
         edge_.update(section_surface(section, snapshot.nodes), picture.theme->muted, 0.7 * picture.line);
-        edge_.actor()->SetUserMatrix(plane.matrix());
+        edge_.actor()->SetUserMatrix(before_the_cut(plane, geometry.nodes.spacing));
         track_.update(picture, 1.6 * extent_.length, 0.22 * extent_.length);
 
+        // A pool that is drawn out lies behind its laser.
+        const auto stretch_shown = stretch_around(plane, geometry.nodes, 1.35 * extent_.length,
+                                                  has_moved(leading_beam(snapshot)) ? 0.8 : 0.5);
         std::vector<Vec3> corners;
-        for (const double s : {-1.08 * extent_.length, 0.27 * extent_.length}) {
-            for (const double side : {-0.5 * extent_.width, 0.55 * extent_.width}) {
-                for (const double z : {bottom, plane.origin.z() + 0.7 * extent_.depth}) {
-                    corners.push_back(plane.point(s, z) + side * away);
-                }
+        for (const double s : stretch_shown) {
+            for (const double z : {bottom, top + 0.5 * extent_.depth}) {
+                corners.push_back(plane.point(s, z) + 0.55 * extent_.width * away);
             }
+            for (const double z : {top - extent_.depth, top}) {
+                corners.push_back(plane.point(s, z) - 0.5 * extent_.width * away);
+            }
+            corners.push_back(plane.point(s, bottom));
         }
         fit_camera(renderer_->GetActiveCamera(), corners, away + 0.22 * plane.along - 0.5 * Vec3::UnitZ(),
                    Vec3::UnitZ(), scene.width / scene.height);
@@ -89,9 +100,24 @@ class PoolPanel : public Panel {
     }
 
   private:
+    static bool has_moved(const BeamSnapshot* beam) {
+        return beam != nullptr && (beam->scan_direction.norm() > 0.0 || beam->path_done.size() > 1);
+    }
+
+    /// As the plane's own, but a little nearer and lower, where the line of the cut's edge is not half hidden
+    /// by the surface it bounds and stays below the pool that stands out.
+    static vtkSmartPointer<vtkMatrix4x4> before_the_cut(const SectionPlane& plane, double spacing) {
+        SectionPlane nearer = plane;
+        nearer.origin -= 0.12 * spacing * plane.across();
+        auto matrix = nearer.matrix();
+        matrix->SetElement(2, 3, -0.1 * spacing);
+        return matrix;
+    }
+
     PoolExtent extent_;
     vtkNew<vtkPlane> far_half_;
     vtkNew<vtkPlane> near_half_;
+    vtkNew<vtkPlane> path_half_;
     SurfaceActor surface_{renderer_};
     SurfaceActor walls_{renderer_};
     SurfaceActor section_{renderer_};

@@ -107,15 +107,9 @@ class SectionPanel : public Panel {
         // A third of the height is air; no more is shown than there is.
         double height = std::min({wanted, 1.35 * thickness});
         height = std::max(std::min(height, (s_high - s_low) / aspect), 8.0 * geometry.nodes.spacing);
-        const double width = height * aspect;
-        double left = -0.66 * width;
-        if (width >= s_high - s_low) {
-            left = 0.5 * (s_low + s_high - width);
-        } else {
-            left = std::clamp(left, s_low, s_high - width);
-        }
-        const double top = plane.origin.z() + 0.25 * height;
-        return {left, left + width, top - height, top};
+        const auto [left, right] = stretch_around(plane, geometry.nodes, height * aspect, 0.66);
+        const double top = ground(plane, geometry, 0.5 * height) + 0.25 * height;
+        return {left, right, top - height, top};
     }
 
     void aim(const std::array<double, 4>& window) {

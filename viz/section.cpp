@@ -59,6 +59,19 @@ std::array<double, 2> stretch_inside(const SectionPlane& plane, const NodeLattic
     return stretch;
 }
 
+std::array<double, 2> stretch_around(const SectionPlane& plane, const NodeLattice& nodes, double width,
+                                     double share) {
+    const auto [low, high] = stretch_inside(plane, nodes);
+    const double left =
+        width >= high - low ? 0.5 * (low + high - width) : std::clamp(-share * width, low, high - width);
+    return {left, left + width};
+}
+
+double ground(const SectionPlane& plane, const Geometry& geometry, double reach) {
+    const double top = geometry.upper.z();
+    return top - plane.origin.z() < reach ? top : plane.origin.z();
+}
+
 vtkSmartPointer<vtkPolyData> make_section(const Picture& picture, const SectionPlane& plane,
                                           const std::array<double, 4>& window) {
     const Snapshot& snapshot = *picture.instant->snapshot;

@@ -30,6 +30,14 @@ SectionPlane track_plane(const Picture& picture);
 /// The stretch of s inside the box of the domain, m.
 std::array<double, 2> stretch_inside(const SectionPlane& plane, const NodeLattice& nodes);
 
+/// A stretch of that width with the laser at `share` of it, moved, if need be, to lie inside.
+std::array<double, 2> stretch_around(const SectionPlane& plane, const NodeLattice& nodes, double width,
+                                     double share);
+
+/// Height that a view of the plane keeps to: over powder, where the spot jumps from ball to ball, that of the
+/// highest one, unless it is further off than `reach`, m.
+double ground(const SectionPlane& plane, const Geometry& geometry, double reach);
+
 /// The material in a window of the plane, as polygons at (s, z, 0) with the picture's field as scalars and
 /// the array `temperature` and `boundary` (signed distance); window = s low, s high, z low, z high in m.
 vtkSmartPointer<vtkPolyData> make_section(const Picture& picture, const SectionPlane& plane,

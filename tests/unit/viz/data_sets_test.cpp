@@ -191,9 +191,13 @@ TEST(DataSets, geometry_is_made_once_while_the_level_set_is_the_same) {
     const Instant first = make_instant(test::make_snapshot(plate, 0.0), geometry);
     const Instant second = make_instant(test::make_snapshot(plate, 1e-5), geometry);
     EXPECT_EQ(first.geometry, second.geometry);
-    plate.phi = nullptr;
+    plate.phi = nullptr; // the same values in memory of their own, as every snapshot of a run has them
     const Instant third = make_instant(test::make_snapshot(plate, 2e-5), geometry);
-    EXPECT_NE(first.geometry, third.geometry);
+    EXPECT_EQ(first.geometry, third.geometry);
+    plate.phi = nullptr;
+    plate.roughness = 3e-6;
+    const Instant rough = make_instant(test::make_snapshot(plate, 3e-5), geometry);
+    EXPECT_NE(first.geometry, rough.geometry);
 }
 
 TEST(DataSets, writing_files_leaves_the_data_sets_as_they_were) {

@@ -1,5 +1,6 @@
 #include "scratch.hpp"
 #include "synthetic.hpp"
+#include "viz/colors.hpp"
 #include "viz/frame_renderer.hpp"
 #include "viz/movie.hpp"
 #include "viz/process.hpp"
@@ -31,6 +32,55 @@ double difference(vtkImageData* a, vtkImageData* b) {
         sum += std::abs(static_cast<int>(left->GetValue(i)) - static_cast<int>(right->GetValue(i)));
     }
     return sum / static_cast<double>(count);
+}
+
+/// How different two pictures of one size look: root mean square, over blocks of 8 x 8 pixels, of the
+/// difference of their mean colours, 0 to 255. Edges that another renderer smooths otherwise weigh little,
+/// whatever a reader would notice weighs much.
+double visible_difference(vtkImageData* a, vtkImageData* b) {
+    constexpr int block = 8;
+    auto* left = vtkUnsignedCharArray::SafeDownCast(a->GetPointData()->GetScalars());
+    auto* right = vtkUnsignedCharArray::SafeDownCast(b->GetPointData()->GetScalars());
+    if (left->GetNumberOfValues() != right->GetNumberOfValues()) {
+        return 255.0;
+    }
+    const int width = a->GetDimensions()[0];
+    const int height = a->GetDimensions()[1];
+    double squares = 0.0;
+    int count = 0;
+    for (int y = 0; y + block <= height; y += block) {
+        for (int x = 0; x + block <= width; x += block) {
+            for (int channel = 0; channel < 3; ++channel, ++count) {
+                double sum = 0.0;
+                for (int v = y; v < y + block; ++v) {
+                    for (int u = x; u < x + block; ++u) {
+                        const vtkIdType at = 3 * (static_cast<vtkIdType>(v) * width + u) + channel;
+                        sum += static_cast<int>(left->GetValue(at)) - static_cast<int>(right->GetValue(at));
+                    }
+                }
+                squares += sum * sum / (block * block * block * block);
+            }
+        }
+    }
+    return std::sqrt(squares / count);
+}
+
+vtkSmartPointer<vtkImageData> read_png(const std::filesystem::path& path) {
+    vtkNew<vtkPNGReader> reader;
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    return reader->GetOutput();
+}
+
+/// A picture of that size in one colour.
+vtkSmartPointer<vtkImageData> plain(vtkImageData* like, const std::array<int, 3>& color) {
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->DeepCopy(like);
+    auto* bytes = vtkUnsignedCharArray::SafeDownCast(image->GetPointData()->GetScalars());
+    for (vtkIdType i = 0; i < bytes->GetNumberOfValues(); ++i) {
+        bytes->SetValue(i, static_cast<unsigned char>(color[static_cast<std::size_t>(i % 3)]));
+    }
+    return image;
 }
 
 std::size_t color_count(vtkImageData* image) {
@@ -101,6 +151,44 @@ TEST_F(Pictures, same_instant_gives_same_picture_and_wrong_range_does_not) {
         options.color_range = {{300.0, 2000.0}};
         // The section follows the laser: little but the clock differs.
         EXPECT_GT(difference(reference, picture(view, 900e-6)), 0.02) << view << " at another time";
+    }
+}
+
+// The baselines in tests/unit/viz/baselines were looked at by a person. To make them anew after a wanted
+// change, run this test with MELTSCOPE_BASELINES=FOLDER and look at what it puts there.
+TEST_F(Pictures, views_look_like_their_baselines_and_spoilt_ones_do_not) {
+    // Views remember what they have shown: how large the pool was, how wide the numbers of a chart.
+    renderer = std::make_unique<FrameRenderer>(Backend::automatic);
+    constexpr double same = 3.0; // of 255; the spoilt ones differ by at least twice as much
+    options.size = {480, 270};
+    for (const Background background : {Background::dark, Background::light}) {
+        options.background = background;
+        for (const std::string& view : view_names()) {
+            const std::string name = view + (background == Background::light ? "_light.png" : "_dark.png");
+            SCOPED_TRACE(name);
+            options.color_range = {{300.0, 2000.0}};
+            const auto image = picture(view, 600e-6);
+            if (const char* folder = std::getenv("MELTSCOPE_BASELINES")) {
+                write_png(image, std::filesystem::path(folder) / name, 600e-6);
+            }
+            const auto kept = std::filesystem::path(MELTSCOPE_BASELINE_FOLDER) / name;
+            if (!std::filesystem::exists(kept)) {
+                ADD_FAILURE() << "there is no baseline " << kept;
+                continue;
+            }
+            const auto baseline = read_png(kept);
+            EXPECT_LT(visible_difference(image, baseline), same);
+
+            const auto& back = theme(background).background;
+            std::array<int, 3> blank{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                blank[i] = static_cast<int>(std::lround(255.0 * back[i]));
+            }
+            EXPECT_GT(visible_difference(plain(image, blank), baseline), 2.0 * same) << "blank";
+            EXPECT_GT(visible_difference(plain(image, {120, 60, 60}), baseline), 2.0 * same) << "one colour";
+            options.color_range = {{300.0, 1000.0}};
+            EXPECT_GT(visible_difference(picture(view, 600e-6), baseline), 2.0 * same) << "wrong range";
+        }
     }
 }
 

@@ -376,13 +376,19 @@ void balance(Simulation& s) {
 
 double energy_spread(const Simulation& s) {
     const Field interpolated = particle_temperatures(s.grid, s.particles, s.nodes);
+    const std::vector<LaneGroup>& groups = s.particles.layout.groups;
     double most = 0.0;
-    const std::int64_t count = s.particles.count();
 #pragma omp parallel for schedule(static) reduction(max : most)
-    for (std::int64_t q = 0; q < count; ++q) {
-        const std::int64_t at = s.particles.layout.place[q];
-        const double own = s.eos[s.particles.material[q]].temperature(s.particles.specific_energy[at]);
-        most = std::max(most, std::abs(own - interpolated[at]));
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        Lanes most_here(0.0);
+        for (std::int64_t slot = groups[g].first_slot; slot < groups[g].first_slot + groups[g].slots;
+             ++slot) {
+            const std::int64_t at = slot * lane_count;
+            const Lanes own = s.eos[groups[g].kind].temperature(load(&s.particles.specific_energy[at]));
+            const auto padding = load(&s.particles.mass[at]) == 0.0;
+            most_here = max(most_here, select(padding, Lanes(0.0), abs(own - load(&interpolated[at]))));
+        }
+        most = std::max(most, hmax(most_here));
     }
     return most;
 }

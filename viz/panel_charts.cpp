@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
+
 #include <vtkAxis.h>
 #include <vtkChartXY.h>
 #include <vtkContextActor.h>
@@ -41,7 +43,7 @@ class TimeChart {
         for (std::size_t i = 0; i < series_.size(); ++i) {
             plots_.push_back(chart_->AddPlot(vtkChart::LINE));
         }
-        chart_->SetAutoSize(false);
+        chart_->SetLayoutStrategy(vtkChart::AXES_TO_RECT);
         chart_->SetShowLegend(false);
         scene->AddItem(chart_);
     }
@@ -77,45 +79,58 @@ class TimeChart {
         }
         const double top = highest > 0.0 ? 1.08 * highest : 1.0;
         const double end = std::max(last, 1e-9) * (milliseconds ? 1e3 : 1e6);
-        style_axis(chart_->GetAxis(vtkAxis::BOTTOM), picture, end, 4);
-        style_axis(chart_->GetAxis(vtkAxis::LEFT), picture, top, 4);
+        style_axis(chart_->GetAxis(vtkAxis::BOTTOM), picture, end);
+        style_axis(chart_->GetAxis(vtkAxis::LEFT), picture, top);
 
-        // Room for half of the last number, which stands below the end of the axis.
-        chart_->SetHiddenAxisBorder(static_cast<int>(std::lround(1.2 * picture.font)));
-        // Titles are drawn here: the chart's own keep a distance in pixels, too little in large pictures.
-        const double heading = 1.1 * picture.font;
-        constexpr double own_room = 12.0; // pixels that the chart keeps below its numbers in any case
-        const double footing = std::max(0.0, 0.9 * picture.font - own_room);
-        chart_->SetSize(
-            vtkRectf(static_cast<float>(area.x - offset[0]), static_cast<float>(area.y + footing - offset[1]),
-                     static_cast<float>(area.width), static_cast<float>(area.height - heading - footing)));
-        draw_names(picture, area, canvas);
+        // The chart's own layout keeps distances in pixels, too small for large pictures: room for the
+        // numbers is made here, and the time's title drawn.
         TextStyle style;
-        style.size = 0.8 * picture.font;
+        style.size = number_size(picture);
         style.color = picture.theme->muted;
         style.horizontal = Align::middle;
         style.vertical = Align::low;
-        canvas.text({area.x + 0.5 * area.width, area.y}, milliseconds ? "time (ms)" : "time (µs)", style);
+        double widest = 0.0;
+        for (const double tick : nice_ticks(0.0, top, tick_count)) {
+            widest = std::max(widest, Canvas::extent(fmt::format("{:g}", tick), style)[0]);
+        }
+        const double left = widest + number_distance(picture) + tick_length(picture);
+        const double bottom = number_distance(picture) + tick_length(picture) + 2.1 * style.size;
+        const double heading = 2.0 * picture.font;
+        const double right =
+            0.6 * picture.font + 0.5 * widest; // half of the last time stands beside the axis
+        chart_->SetSize(vtkRectf(static_cast<float>(area.x + left - offset[0]),
+                                 static_cast<float>(area.y + bottom - offset[1]),
+                                 static_cast<float>(area.width - left - right),
+                                 static_cast<float>(area.height - heading - bottom)));
+        draw_names(picture, area, canvas);
+        canvas.text({area.x + left + 0.5 * (area.width - left - right), area.y},
+                    milliseconds ? "time (ms)" : "time (µs)", style);
     }
 
   private:
-    static void style_axis(vtkAxis* axis, const Picture& picture, double end, int ticks) {
+    static constexpr int tick_count = 4;
+    /// Pixels.
+    static double number_size(const Picture& picture) { return 0.8 * picture.font; }
+    static double number_distance(const Picture& picture) { return 0.5 * picture.font; }
+    static double tick_length(const Picture& picture) { return 0.3 * picture.font; }
+
+    static void style_axis(vtkAxis* axis, const Picture& picture, double end) {
         const Theme& colors = *picture.theme;
         vtkTextProperty* property = axis->GetLabelProperties();
         property->SetColor(colors.muted[0], colors.muted[1], colors.muted[2]);
-        property->SetFontSize(std::max(6, static_cast<int>(std::lround(0.8 * picture.font))));
+        property->SetFontSize(std::max(6, static_cast<int>(std::lround(number_size(picture)))));
         property->SetBold(false);
         axis->SetTitle("");
         axis->GetPen()->SetColorF(colors.muted[0], colors.muted[1], colors.muted[2]);
         axis->GetPen()->SetWidth(static_cast<float>(0.6 * picture.line));
         axis->GetGridPen()->SetColorF(colors.panel_edge[0], colors.panel_edge[1], colors.panel_edge[2]);
         axis->GetGridPen()->SetWidth(static_cast<float>(0.5 * picture.line));
-        axis->SetLabelOffset(static_cast<float>(0.5 * picture.font));
-        axis->SetTickLength(static_cast<float>(0.3 * picture.font));
+        axis->SetLabelOffset(static_cast<float>(number_distance(picture)));
+        axis->SetTickLength(static_cast<float>(tick_length(picture)));
         axis->SetBehavior(vtkAxis::FIXED);
         axis->SetRange(0.0, end);
         vtkNew<vtkDoubleArray> positions;
-        for (const double tick : nice_ticks(0.0, end, ticks)) {
+        for (const double tick : nice_ticks(0.0, end, tick_count)) {
             positions->InsertNextValue(tick);
         }
         axis->SetCustomTickPositions(positions);

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <vtkClipPolyData.h>
+#include <vtkNew.h>
 #include <vtkPlane.h>
+#include <vtkPointData.h>
 #include <vtkProperty.h>
 
 namespace meltscope::viz {
@@ -71,13 +74,16 @@ class PoolPanel : public Panel {
         solidus_.update(section_lines(section, "temperature", {snapshot.solidus}), picture.theme->solidus,
                         picture.line);
         solidus_.actor()->SetUserMatrix(plane.matrix());
-        edge_.update(section_surface(section, snapshot.nodes), picture.theme->muted, 0.7 * picture.line);
+        edge_.update(colder_than(section_surface(section, snapshot.nodes), snapshot.liquidus),
+                     picture.theme->muted, 0.7 * picture.line);
         edge_.actor()->SetUserMatrix(before_the_cut(plane, geometry.nodes.spacing));
         track_.update(picture, 1.6 * extent_.length, 0.22 * extent_.length);
 
         // A pool that is drawn out lies behind its laser.
-        const auto stretch_shown = stretch_around(plane, geometry.nodes, 1.35 * extent_.length,
-                                                  has_moved(leading_beam(snapshot)) ? 0.8 : 0.5);
+        const auto [low, high] = stretch_inside(plane, geometry.nodes);
+        const auto stretch_shown =
+            stretch_around(plane, geometry.nodes, std::min(1.35 * extent_.length, high - low),
+                           has_moved(leading_beam(snapshot)) ? 0.8 : 0.5);
         std::vector<Vec3> corners;
         for (const double s : stretch_shown) {
             for (const double z : {bottom, top + 0.5 * extent_.depth}) {
@@ -102,6 +108,20 @@ class PoolPanel : public Panel {
   private:
     static bool has_moved(const BeamSnapshot* beam) {
         return beam != nullptr && (beam->scan_direction.norm() > 0.0 || beam->path_done.size() > 1);
+    }
+
+    /// The edge of the cut without its stretches through the pool, which stands out before them.
+    static vtkSmartPointer<vtkPolyData> colder_than(vtkPolyData* edge, double temperature) {
+        if (edge->GetNumberOfCells() == 0) {
+            return edge;
+        }
+        edge->GetPointData()->SetActiveScalars("temperature");
+        vtkNew<vtkClipPolyData> clip;
+        clip->SetInputData(edge);
+        clip->SetValue(temperature);
+        clip->InsideOutOn();
+        clip->Update();
+        return clip->GetOutput();
     }
 
     /// As the plane's own, but a little nearer and lower, where the line of the cut's edge is not half hidden

@@ -136,8 +136,8 @@ TEST(ConsoleReplay, random_sessions_replay_bit_for_bit_with_other_threads_and_wh
         }
         const CheckpointData end = kept(whole);
         EXPECT_FALSE(end.journal.empty());
-        // With two or three threads every fifth: so few particles take long on many.
-        expect_equal(end_of_replay(end.journal, session % 5 == 0 ? 2 + session % 2 : 1), end);
+        // With two or three threads every tenth: so few particles take long on many.
+        expect_equal(end_of_replay(end.journal, session % 10 == 0 ? 2 + session / 10 % 2 : 1), end);
 
         // A plan is followed on up to the interruption, and from there: what was said at that step is not
         // said again.

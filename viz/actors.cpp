@@ -272,7 +272,7 @@ TrackActors::TrackActors(vtkRenderer* renderer)
 }
 
 void TrackActors::clip_paths(vtkPlane* plane) {
-    for (LineActor* path : {&path_to_come_, &path_done_}) {
+    for (LineActor* path : {&path_to_come_, &path_done_, &moves_to_come_, &moves_done_}) {
         path->mapper()->AddClippingPlane(plane);
     }
 }

@@ -12,6 +12,13 @@ std::string shown_or(const std::optional<double>& value, const char* unit, const
     return value ? shown(*value, unit) : otherwise;
 }
 
+/// Throws std::invalid_argument if a material lacks what a loss that is on needs.
+void check_losses(const RunParameters& parameters) {
+    const PhysicsOptions& physics = parameters.physics;
+    make_loss_laws(parameters.materials,
+                   {physics.radiation, physics.evaporation, physics.convection, physics.ambient});
+}
+
 std::string switch_loss(Run& run, Arguments& arguments, bool PhysicsOptions::*loss, const std::string& name) {
     PhysicsOptions& physics = run.simulation.parameters.physics;
     physics.*loss = arguments.on_or_off(name);

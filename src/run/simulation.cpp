@@ -290,12 +290,9 @@ void update_geometry(Simulation& s) {
     make_derived_again(s, s.nodes.mass_energy, s.quiescence.bricks.awake);
 }
 
-void check_losses(const RunParameters& parameters) {
-    make_loss_laws(parameters.materials, loss_options(parameters.physics));
-}
-
 void update_losses(Simulation& s) {
-    check_losses(s.parameters); // throws before anything changes
+    make_loss_laws(s.parameters.materials,
+                   loss_options(s.parameters.physics)); // throws before anything changes
     s.quiescence.looked_with = -1.0;
     if (s.quiescence.bricks.awake.empty()) {
         make_losses(s, s.nodes);

@@ -123,9 +123,6 @@ void advance(Simulation& simulation, double target);
 /// options were changed.
 void update_geometry(Simulation& simulation);
 
-/// Throws std::invalid_argument if a material lacks what a loss that is on needs.
-void check_losses(const RunParameters& parameters);
-
 /// Takes over changed losses: radiation, evaporation, reabsorption, convection, ambient. Throws
 /// std::invalid_argument if a material lacks what a loss needs; the simulation is then as before.
 void update_losses(Simulation& simulation);

@@ -127,6 +127,8 @@ TEST(RunState, a_simulation_taken_from_a_checkpoint_goes_on_bit_for_bit) {
     meltscope::Run again;
     again.simulation = simulation_from(data, block_parameters(), block_grid(), 2);
     again.journal = data.journal;
+    EXPECT_EQ(again.simulation.least_temperature, run.simulation.least_temperature);
+    EXPECT_GT(run.simulation.least_temperature, 0.0);
     for (int n = 0; n < 4; ++n) {
         advance(run.simulation, 1.0);
         advance(again.simulation, 1.0);

@@ -14,6 +14,9 @@
 #include <vtkErrorCode.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
+#include <vtkInformation.h>
+#include <vtkInformationDoubleVectorKey.h>
+#include <vtkInformationInformationVectorKey.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkUnstructuredGrid.h>
@@ -74,6 +77,23 @@ void convert(vtkDataSet* data) {
         vtkNew<vtkPoints> result;
         result->SetData(converted<Wanted>(points->GetPoints()->GetData()));
         points->SetPoints(result);
+    }
+}
+
+/// Takes off the arrays what VTK notes there when it first looks for their ranges: it would be written with
+/// an array that lasts over several outputs, from the second on.
+void forget_ranges(vtkDataSet* data) {
+    const auto forget = [](vtkDataArray* array) {
+        if (array != nullptr && array->HasInformation()) {
+            array->GetInformation()->Remove(vtkDataArray::L2_NORM_RANGE());
+            array->GetInformation()->Remove(vtkDataArray::COMPONENT_RANGE());
+        }
+    };
+    for (int i = 0; i < data->GetPointData()->GetNumberOfArrays(); ++i) {
+        forget(data->GetPointData()->GetArray(i));
+    }
+    if (auto* points = vtkPointSet::SafeDownCast(data); points != nullptr && points->GetPoints() != nullptr) {
+        forget(points->GetPoints()->GetData());
     }
 }
 
@@ -167,6 +187,7 @@ void FileOutput::write_one(const std::string& kind, const char* extension, vtkDa
     } else {
         convert<vtkDoubleArray>(output);
     }
+    forget_ranges(output);
     if (auto* surface = vtkPolyData::SafeDownCast(output)) {
         shrink_cells(surface);
     }

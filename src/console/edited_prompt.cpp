@@ -117,6 +117,9 @@ class EditedPrompt : public Prompt {
         }
         set_up();
         while (!ending_) {
+            // Before the prompt is drawn: el_gets does it only after, and until then the terminal acts on
+            // Ctrl-D.
+            el_set(editor_, EL_PREP_TERM, 1);
             int count = 0;
             const char* text = el_gets(editor_, &count);
             if (!text || count <= 0)

@@ -146,6 +146,7 @@ void wake_some(Simulation& s, std::span<const std::int64_t> which) {
 void begin_bricks(Simulation& s) {
     s.quiescence = {};
     s.quiescence.bricks = make_bricks(s.grid, s.particles, s.eos);
+    s.quiescence.mass_of_all = s.nodes.mass; // nobody sleeps yet
     s.quiescence.at_surface = bricks_at_surface(s);
 }
 

@@ -358,13 +358,8 @@ void add_particles(Simulation& s, const ParticleList& more) {
     make_derived_again(s, std::move(mass_energy), std::move(awake));
 }
 
-Field node_masses(const Simulation& s) {
-    if (s.quiescence.bricks.awake.empty())
-        return s.nodes.mass;
-    Field mass(s.grid.size, 0.0);
-    add_node_mass(s.grid, s.particles, all_groups(s.particles.layout), -1, mass);
-    fold_ghosts(s.grid, s.parameters.boundary, AtFixedFaces::leave, mass);
-    return mass;
+const Field& node_masses(const Simulation& s) {
+    return s.quiescence.bricks.awake.empty() ? s.nodes.mass : s.quiescence.mass_of_all;
 }
 
 void balance(Simulation& s) {

@@ -119,6 +119,7 @@ class Prompt(Steered):
 
     def test_ctrl_d_deletes_within_a_line_and_ends_the_input_on_an_empty_one(self):
         terminal = self.start()
+        terminal.expect("meltscope> ")  # until then the terminal itself would act on Ctrl-D
         terminal.type("power 2002\x1b[D\x04\r")  # the last 2 is deleted
         terminal.expect("-> 200 W")
         terminal.type("\x04")

@@ -60,6 +60,7 @@ enum class StepLimit { diffusion, beam, max_step, landing };
 struct Quiescence {
     Bricks bricks;                ///< no bricks: nothing sleeps
     std::vector<char> at_surface; ///< of each brick: it shares nodes with surface elements
+    Field mass_of_all;            ///< kg, the nodes' masses, of those asleep too
     double looked_with = -1.0;    ///< K: with this tolerance all that sleeps has been found quiet
 };
 
@@ -142,7 +143,7 @@ void balance(Simulation& simulation);
 double energy_spread(const Simulation& simulation);
 
 /// The nodes' masses in kg, of all particles whether they are awake or not.
-Field node_masses(const Simulation& simulation);
+const Field& node_masses(const Simulation& simulation);
 
 /// Power in W that a laser emits at a time, and where its beam is.
 BeamPosition beam_now(const Laser& laser, double time, double& power);

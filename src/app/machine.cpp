@@ -1,5 +1,6 @@
 #include "machine.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -29,6 +30,15 @@ double forget_peak_memory() {
     double pages = 0.0, resident_pages = 0.0;
     std::ifstream("/proc/self/statm") >> pages >> resident_pages;
     return resident_pages * double(sysconf(_SC_PAGESIZE));
+}
+
+void keep_freed_memory() {
+#ifdef M_MMAP_THRESHOLD
+    if (std::getenv("MALLOC_MMAP_THRESHOLD_") || std::getenv("MALLOC_TRIM_THRESHOLD_"))
+        return;
+    mallopt(M_MMAP_THRESHOLD, 32 << 20); // the most that is allowed
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
 }
 
 void let_threads_sleep(char** arguments) {

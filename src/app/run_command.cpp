@@ -247,6 +247,7 @@ int execute(const RunRequest& request) {
                                        : request.overwrite ? ExistingRun::overwrite
                                                            : ExistingRun::refuse);
     PreparedRun prepared = prepare_run(std::move(input));
+    keep_freed_memory(); // not what only the set-up needed
     terminal.log_to(claim.paths().log(), folder.goes_on);
     if (claim.stale_owner())
         terminal.note(fmt::format("the run of process {} in this folder ended without cleaning up",

@@ -27,26 +27,15 @@ quiescent_tolerance = 0.0
 end = 1.0
 )";
 
-/// One laser along x from a quarter to three quarters of `length` (m), `across` (m) from the side.
-std::string laser(double length, double across) {
-    return fmt::format(R"(
-[[laser]]
-power = 180.0
-absorptivity = 0.4
-spot_radius = 5e-5
-path = [{{move = [{start}, {across}, 0]}}, {{to = [{stop}, {across}, 0], speed = 0.8}}]
-)",
-                       fmt::arg("start", 0.25 * length), fmt::arg("stop", 0.75 * length),
-                       fmt::arg("across", across));
-}
+/// Lengths in m of a plate from z = `bottom` to 0, one corner at x = y = 0, with `head` above it.
+struct PlateLengths {
+    double cell, length, width, bottom, head;
+};
 
-} // namespace
-
-Scenario bench_block(std::int64_t particles, const std::vector<std::string>& overrides) {
-    const auto half = std::max<std::int64_t>(4, std::llround(std::cbrt(double(particles) / 2.0) / 2.0));
-    const double dx = 1e-5, width = double(half) * dx, length = 2.0 * width, head = 3.0 * dx;
-    const std::string text =
-        fmt::format(R"({in625}
+/// The plate under one laser along its middle, from a quarter to three quarters of its length; last in the
+/// text is the table of the laser.
+std::string plate_text(const PlateLengths& plate, const std::string& on_it = {}) {
+    return fmt::format(R"({in625}
 [domain]
 min = [0, 0, {bottom}]
 max = [{length}, {width}, {head}]
@@ -56,11 +45,26 @@ shape = "box"
 material = "in625"
 min = [0, 0, {bottom}]
 max = [{length}, {width}, 0]
-{laser})",
-                    fmt::arg("in625", in625), fmt::arg("bottom", -width), fmt::arg("length", length),
-                    fmt::arg("width", width), fmt::arg("head", head), fmt::arg("dx", dx),
-                    fmt::arg("laser", laser(length, 0.5 * width)));
-    return read_scenario_text(text, overrides, "bench");
+{on_it}
+[[laser]]
+power = 180.0
+absorptivity = 0.4
+spot_radius = 5e-5
+path = [{{move = [{start}, {across}, 0]}}, {{to = [{stop}, {across}, 0], speed = 0.8}}]
+)",
+                       fmt::arg("in625", in625), fmt::arg("bottom", plate.bottom),
+                       fmt::arg("length", plate.length), fmt::arg("width", plate.width),
+                       fmt::arg("head", plate.head), fmt::arg("dx", plate.cell), fmt::arg("on_it", on_it),
+                       fmt::arg("start", 0.25 * plate.length), fmt::arg("stop", 0.75 * plate.length),
+                       fmt::arg("across", 0.5 * plate.width));
+}
+
+} // namespace
+
+Scenario bench_block(std::int64_t particles, const std::vector<std::string>& overrides) {
+    const auto half = std::max<std::int64_t>(4, std::llround(std::cbrt(double(particles) / 2.0) / 2.0));
+    const double dx = 1e-5, width = double(half) * dx;
+    return read_scenario_text(plate_text({dx, 2.0 * width, width, -width, 3.0 * dx}), overrides, "bench");
 }
 
 Scenario bench_powder(std::int64_t particles, const std::vector<std::string>& overrides) {
@@ -70,18 +74,7 @@ Scenario bench_powder(std::int64_t particles, const std::vector<std::string>& ov
     const double solid = length * width * (plate + packing * layer);
     const double cells_in_unit = unit * std::cbrt(double(particles) / 8.0 / solid);
     const double dx = unit / (2.0 * std::max(1.0, std::round(0.5 * cells_in_unit)));
-    const std::string text = fmt::format(
-        R"({in625}
-[domain]
-min = [0, 0, {bottom}]
-max = [{length}, {width}, {head}]
-cell_size = {dx}
-[[body]]
-shape = "box"
-material = "in625"
-min = [0, 0, {bottom}]
-max = [{length}, {width}, 0]
-[[body]]
+    const std::string balls = fmt::format(R"([[body]]
 shape = "powder"
 material = "in625"
 min = [0, 0, 0]
@@ -91,11 +84,10 @@ d50 = 26e-6
 d90 = 36e-6
 packing = {packing}
 seed = 4
-{laser})",
-        fmt::arg("in625", in625), fmt::arg("bottom", -plate), fmt::arg("length", length),
-        fmt::arg("width", width), fmt::arg("head", head), fmt::arg("dx", dx), fmt::arg("layer", layer),
-        fmt::arg("packing", packing), fmt::arg("laser", laser(length, 0.5 * width)));
-    return read_scenario_text(text, overrides, "bench");
+)",
+                                          fmt::arg("length", length), fmt::arg("width", width),
+                                          fmt::arg("layer", layer), fmt::arg("packing", packing));
+    return read_scenario_text(plate_text({dx, length, width, -plate, head}, balls), overrides, "bench");
 }
 
 } // namespace meltscope

@@ -45,16 +45,28 @@ SurfaceGroups find_surface_groups(const Grid& grid, const Particles& particles, 
     return near;
 }
 
-/// s_p in m^2 of the particles of the surface groups, entry by entry; zero beyond the gate.
-Field surface_weights(const Grid& grid, const Particles& particles, const Field& phi_hat,
-                      const SurfaceGroups& near) {
-    Field weight(near.entries, 0.0);
+/// Calls work(stencil, group, first_entry, shift) for each stencil of the surface groups, threads sharing the
+/// groups: entry `at` of the per-particle arrays is entry at + shift here.
+template <class Work>
+void for_each_surface_stencil(const Particles& particles, const SurfaceGroups& near, Work work) {
     const LatticeStencils lattices;
 #pragma omp parallel for schedule(static)
     for (std::size_t n = 0; n < near.group.size(); ++n) {
         const LaneGroup& group = particles.layout.groups[near.group[n]];
         const std::int64_t shift = near.first[near.group[n]] - group.first_slot * lane_count;
         for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+            work(stencil, group, first, shift);
+        });
+    }
+}
+
+/// s_p in m^2 of the particles of the surface groups, entry by entry; zero beyond the gate.
+Field surface_weights(const Grid& grid, const Particles& particles, const Field& phi_hat,
+                      const SurfaceGroups& near) {
+    Field weight(near.entries, 0.0);
+    for_each_surface_stencil(
+        particles, near,
+        [&](const auto& stencil, const LaneGroup& group, std::int64_t first, std::int64_t shift) {
             using Stencil = std::decay_t<decltype(stencil)>;
             typename Stencil::Points f;
             stencil.gather(phi_hat.data() + group.corner, grid.stride_y, grid.stride_z, f);
@@ -66,7 +78,6 @@ Field surface_weights(const Grid& grid, const Particles& particles, const Field&
                       &weight[entry + shift]);
             }
         });
-    }
     return weight;
 }
 
@@ -98,12 +109,9 @@ Field sum_at_nodes(const Grid& grid, const Particles& particles, const SurfaceGr
 /// Turns s_p into a_p = s_p sum_i N_ip A_i / sum_q N_iq s_q, m^2.
 void share_out_areas(const Grid& grid, const Particles& particles, const SurfaceGroups& near,
                      const Field& area_by_weight, Field& weight) {
-    const LatticeStencils lattices;
-#pragma omp parallel for schedule(static)
-    for (std::size_t n = 0; n < near.group.size(); ++n) {
-        const LaneGroup& group = particles.layout.groups[near.group[n]];
-        const std::int64_t shift = near.first[near.group[n]] - group.first_slot * lane_count;
-        for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+    for_each_surface_stencil(
+        particles, near,
+        [&](const auto& stencil, const LaneGroup& group, std::int64_t first, std::int64_t shift) {
             std::array<Lanes, std::decay_t<decltype(stencil)>::points> share;
             stencil.gather(area_by_weight.data() + group.corner, grid.stride_y, grid.stride_z, share);
             for (std::size_t p = 0; p < share.size(); ++p) {
@@ -111,7 +119,6 @@ void share_out_areas(const Grid& grid, const Particles& particles, const Surface
                 store(share[p] * load(&weight[entry]), &weight[entry]);
             }
         });
-    }
 }
 
 /// The particles that have an area, one by one in the order of their ids, and their entries.
@@ -155,12 +162,9 @@ void find_feet(const Grid& grid, const Particles& particles, const SurfaceGroups
         element_at[entries[s]] = std::int64_t(s);
     elements.point.resize(entries.size());
     elements.normal.resize(entries.size());
-    const LatticeStencils lattices;
-#pragma omp parallel for schedule(static)
-    for (std::size_t n = 0; n < near.group.size(); ++n) {
-        const LaneGroup& group = particles.layout.groups[near.group[n]];
-        const std::int64_t shift = near.first[near.group[n]] - group.first_slot * lane_count;
-        for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+    for_each_surface_stencil(
+        particles, near,
+        [&](const auto& stencil, const LaneGroup& group, std::int64_t first, std::int64_t shift) {
             using Stencil = std::decay_t<decltype(stencil)>;
             typename Stencil::Points f;
             stencil.gather(phi_hat.data() + group.corner, grid.stride_y, grid.stride_z, f);
@@ -179,7 +183,6 @@ void find_feet(const Grid& grid, const Particles& particles, const SurfaceGroups
                             .cwiseMin(grid.upper_corner());
                 }
         });
-    }
 }
 
 /// A_i = dx^3 |grad phi_i| hat(phi_i), the box's share of the node's cell. The hat is (|n_x| + |n_y| + |n_z|)

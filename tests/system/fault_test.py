@@ -46,6 +46,11 @@ class Faults(ProgramTest):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.01)
 
+    def stop(self, process):
+        """Stops the process for a while (SIGCONT lets it go on); returns once none of its threads runs."""
+        process.send_signal(signal.SIGSTOP)
+        os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+
     def must_fail(self, process, *words):
         """Exit code 1, with an error that holds the words; returns it."""
         _, errors = process.communicate(timeout=120)
@@ -76,7 +81,7 @@ class Faults(ProgramTest):
     def test_a_checkpoint_over_the_quota_stops_the_run_and_leaves_the_one_before(self):
         process = self.start()
         self.wait_for_checkpoint(process)
-        process.send_signal(signal.SIGSTOP)
+        self.stop(process)
         before = {path: path.read_bytes() for path in checkpoints(self.run_folder)}
         resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (200_000, resource.RLIM_INFINITY))
         process.send_signal(signal.SIGCONT)
@@ -91,8 +96,10 @@ class Faults(ProgramTest):
         process = self.start()
         self.wait_for_checkpoint(process)
         folder = self.run_folder / "checkpoints"
+        self.stop(process)  # a file that it opened between the two mounts would keep the second from being read-only
         self.mounted(folder, "--bind", str(folder))
         subprocess.run(["mount", "-o", "remount,ro,bind", str(folder)], check=True)
+        process.send_signal(signal.SIGCONT)
         self.must_fail(process, "Read-only file system", str(folder))
         self.nothing_half_is_left(self.run_folder)
 

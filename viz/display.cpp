@@ -18,7 +18,7 @@ namespace meltscope::viz {
 
 namespace {
 
-constexpr std::chrono::milliseconds server_start_timeout{15000};
+constexpr std::chrono::milliseconds server_start_timeout{60000}; // a busy machine takes its time
 
 // Xlib's own handlers end the process.
 int ignore_protocol_error(::Display*, XErrorEvent*) {

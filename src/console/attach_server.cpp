@@ -43,14 +43,16 @@ class AttachServer::Worker {
         if (fstatat(folder_.get(), socket_name, &there, AT_SYMLINK_NOFOLLOW) == 0) {
             if (!S_ISSOCK(there.st_mode))
                 throw AttachError(fmt::format("{} is in the way", (folder / socket_name).string()));
-            unlinkat(folder_.get(), socket_name, 0);
         }
+        unlinkat(folder_.get(), socket_in_the_making, 0);
         listening_ = Descriptor(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-        const sockaddr_un address = address_in(folder_);
-        // The mode of the socket becomes that of the file, so that it is never open to others.
+        const sockaddr_un address = address_in(folder_, socket_in_the_making);
+        // The mode of the socket becomes that of the file, so that it is never open to others. It gets its
+        // name once it listens: whoever sees it can connect.
         if (!listening_ || fchmod(listening_.get(), 0600) != 0 ||
             bind(listening_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-            fchmodat(folder_.get(), socket_name, 0600, 0) != 0 || listen(listening_.get(), 8) != 0)
+            fchmodat(folder_.get(), socket_in_the_making, 0600, 0) != 0 || listen(listening_.get(), 8) != 0 ||
+            renameat(folder_.get(), socket_in_the_making, folder_.get(), socket_name) != 0)
             throw AttachError(fmt::format("{}: {}", (folder / socket_name).string(), std::strerror(errno)));
         thread_ = std::thread([this] { serve(); });
     }
@@ -194,8 +196,9 @@ class AttachServer::Worker {
             refuse(client, "this console speaks another language");
             return;
         }
-        const bool taken =
-            std::any_of(clients_.begin(), clients_.end(), [](const Client& c) { return c.may_change; });
+        // One that has left has no say any more, though it is let go of only after this round.
+        const bool taken = std::any_of(clients_.begin(), clients_.end(),
+                                       [](const Client& c) { return c.may_change && !c.done; });
         client.may_change = role == "write" && !taken;
         client.outbox->put(role == "write" && taken ? "wanother console has the say; this one looks on\n"
                                                     : fmt::format("w{}\n", console_.status_line()));

@@ -40,6 +40,7 @@ class Descriptor {
 };
 
 inline constexpr const char* socket_name = "console.sock";
+inline constexpr const char* socket_in_the_making = "console.sock.part";
 
 /// The folder, open, and belonging to this user. Throws AttachError.
 inline Descriptor open_own_folder(const std::filesystem::path& folder) {
@@ -54,10 +55,10 @@ inline Descriptor open_own_folder(const std::filesystem::path& folder) {
 
 /// The socket's address by way of the open folder, so that its length does not matter (a sun_path has 108
 /// bytes).
-inline sockaddr_un address_in(const Descriptor& folder) {
+inline sockaddr_un address_in(const Descriptor& folder, const char* name = socket_name) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
-    const std::string path = fmt::format("/proc/self/fd/{}/{}", folder.get(), socket_name);
+    const std::string path = fmt::format("/proc/self/fd/{}/{}", folder.get(), name);
     path.copy(address.sun_path, sizeof address.sun_path - 1);
     return address;
 }

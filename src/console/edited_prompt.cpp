@@ -120,6 +120,10 @@ class EditedPrompt : public Prompt {
             // Before the prompt is drawn: el_gets does it only after, and until then the terminal acts on
             // Ctrl-D.
             el_set(editor_, EL_PREP_TERM, 1);
+            // What was typed since the line before may have been echoed by the terminal; the editor reads and
+            // shows it.
+            std::fputs("\r\033[J", stdout);
+            std::fflush(stdout);
             int count = 0;
             const char* text = el_gets(editor_, &count);
             if (!text || count <= 0)

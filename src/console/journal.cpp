@@ -45,7 +45,7 @@ std::vector<JournalEntry> parse_journal(std::string_view text, const std::string
         const std::size_t end = text.find('\n');
         std::string_view line = text.substr(0, end);
         text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-        if (line.ends_with('\r'))
+        while (line.ends_with('\r')) // all of them, or what is written would read back as another
             line.remove_suffix(1);
         JournalEntry entry;
         entry.line = number;

@@ -29,6 +29,7 @@ class Reader {
 
     template <class Value>
     Value attribute(const char* object, const char* name, hid_t file_type, hid_t memory_type) const {
+        require_own(object);
         const auto owner = take(H5Oopen(file_, object, H5P_DEFAULT), H5Oclose);
         const auto attribute = take(H5Aopen(owner, name, H5P_DEFAULT), H5Aclose);
         const auto type = take(H5Aget_type(attribute), H5Tclose);
@@ -43,6 +44,7 @@ class Reader {
 
     /// Names of what a group holds, in order of name.
     std::vector<std::string> members(const char* group) const {
+        require_own(group);
         const auto handle = take(H5Gopen2(file_, group, H5P_DEFAULT), H5Gclose);
         H5G_info_t info{};
         if (H5Gget_info(handle, &info) < 0)
@@ -62,6 +64,7 @@ class Reader {
     }
 
     std::vector<std::pair<std::string, double>> number_attributes(const char* object) const {
+        require_own(object);
         const auto owner = take(H5Oopen(file_, object, H5P_DEFAULT), H5Oclose);
         std::vector<std::string> names;
         hsize_t position = 0;
@@ -113,12 +116,23 @@ class Reader {
   private:
     Hdf5Handle take(hid_t id, Hdf5Handle::Close close) const { return own(id, close, cannot_read, path_); }
 
+    /// Every step of the path must lie in this file: a soft or external link could lead to another.
+    void require_own(const std::string& path) const {
+        for (std::size_t end = 0; end < path.size();) {
+            end = std::min(path.find('/', end + 1), path.size());
+            const std::string part = path.substr(0, end);
+            H5L_info_t link{};
+            if (part.size() < 2) // the root has no link
+                continue;
+            if (H5Lget_info(file_, part.c_str(), &link, H5P_DEFAULT) < 0)
+                refuse(fmt::format("{} is missing", part));
+            if (link.type != H5L_TYPE_HARD)
+                refuse(fmt::format("{} is a link to elsewhere", part));
+        }
+    }
+
     Hdf5Handle open_array(const std::string& name) const {
-        H5L_info_t link{};
-        if (H5Lget_info(file_, name.c_str(), &link, H5P_DEFAULT) < 0)
-            refuse(fmt::format("{} is missing", name));
-        if (link.type != H5L_TYPE_HARD) // a soft or external link could lead to another file
-            refuse(fmt::format("{} is a link to elsewhere", name));
+        require_own(name);
         return take(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
     }
 

@@ -52,7 +52,7 @@ std::uint64_t hash_words(std::uint64_t state, const char* bytes, std::size_t siz
 
 std::uint64_t hash_after_seal(int descriptor, const std::filesystem::path& path) {
     std::uint64_t state = 0xcbf29ce484222325u;
-    std::vector<char> block(1 << 20);
+    std::vector<char> block(1 << 16);
     for (std::size_t offset = seal_size;;) {
         const std::size_t count = read_block(descriptor, block.data(), block.size(), offset, path);
         state = hash_words(state, block.data(), count);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<const char*, 20> names{"/particles/position",
+constexpr std::array<const char*, 22> names{"/particles/position",
                                             "/particles/mass",
                                             "/particles/volume",
                                             "/particles/specific_energy",
@@ -36,7 +36,9 @@ constexpr std::array<const char*, 20> names{"/particles/position",
                                             "/grid",
                                             "/steering",
                                             "/particles/extra",
-                                            "/grid/extra"};
+                                            "/grid/extra",
+                                            "/grid/awake",
+                                            "/grid/least_temperature"};
 constexpr std::array<const char*, 6> attributes{"schema_version", "time", "step", "dt", "absorbed", "extra"};
 
 double awkward(fuzz::Bytes& bytes) {

@@ -10,8 +10,8 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, checkpoints
-from steered import PATIENCE, Steered, journal_of, run_words
+from program import PATIENCE, PROGRAM, checkpoints
+from steered import Steered, journal_of, run_words
 from terminal import Terminal
 
 

@@ -3,8 +3,8 @@
 import subprocess
 import unittest
 
-from program import PROGRAM, QUICK_LOOK, checkpoints, meltscope
-from steered import PATIENCE, Steered, journal_of, run_words
+from program import PATIENCE, PROGRAM, QUICK_LOOK, checkpoints, meltscope
+from steered import Steered, journal_of, run_words
 
 
 class Pipes(Steered):

@@ -11,7 +11,7 @@ import time
 import unittest
 import xml.etree.ElementTree as xml
 
-from program import PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints, meltscope
+from program import PATIENCE, PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints, meltscope
 
 # Goes on until it is stopped, with files and a checkpoint every few steps.
 ENDLESS = ["--set", "domain.cell_size=40 um", "--set", "time.max_step=1 us", "--set", "time.end=10 s", "--set",
@@ -40,7 +40,7 @@ class Faults(ProgramTest):
         return process
 
     def wait_for_checkpoint(self, process):
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + PATIENCE
         while not checkpoints(self.run_folder):
             self.assertIsNone(process.poll(), "ended before its first checkpoint")
             self.assertLess(time.monotonic(), deadline)
@@ -53,7 +53,7 @@ class Faults(ProgramTest):
 
     def must_fail(self, process, *words):
         """Exit code 1, with an error that holds the words; returns it."""
-        _, errors = process.communicate(timeout=120)
+        _, errors = process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, 1, errors)
         self.assertIn("error: ", errors)
         for word in words:
@@ -130,7 +130,7 @@ class Locks(ProgramTest):
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + PATIENCE
         while not checkpoints(run):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.01)

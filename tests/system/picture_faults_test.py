@@ -1,14 +1,12 @@
 """Whatever befalls pictures and files, the run is told so clearly and its results are the same bits."""
 
 import os
-import pathlib
 import shutil
 import signal
 import subprocess
-import time
 import unittest
 
-from program import PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints
+from program import PATIENCE, PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints
 
 # Two hundred steps and more, so that something can happen meanwhile; the end is the only checkpoint.
 RUN = [*SMALL, "--set", "time.max_step=1 us", "--set", "checkpoint.every=1 s", "--set", "render.size=[320,180]"]
@@ -31,7 +29,7 @@ class Faults(ProgramTest):
 
     def run_with(self, name, *arguments, before=(), **options):
         words = [*before, PROGRAM, "run", QUICK_LOOK, *RUN, "--output", self.folder / name, *arguments]
-        result = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=120,
+        result = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=PATIENCE,
                                 stdin=subprocess.DEVNULL, **options)
         self.assertEqual(result.returncode, 0, result.stderr)
         return result.stderr
@@ -85,21 +83,22 @@ class Faults(ProgramTest):
 
     def test_output_folder_removed_while_running(self):
         folder = self.folder / "run"
-        process = subprocess.Popen([PROGRAM, "run", str(QUICK_LOOK), *RUN, "--no-render", "--output", str(folder)],
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([PROGRAM, "run", str(QUICK_LOOK), *RUN, "--no-render", "--repl", "--output", str(folder)],
+                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
-        deadline = time.monotonic() + 60
-        while not (folder / "surface.pvd").exists():
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.002)
-        process.send_signal(signal.SIGSTOP)
-        stat = pathlib.Path(f"/proc/{process.pid}/task")
-        while any(" T " not in (task / "stat").read_text() for task in stat.iterdir()):
-            self.assertLess(time.monotonic(), deadline)
-        self.assertFalse(checkpoints(folder), "the run has ended before anything could be removed")
+        process.stdin.write("step 100\nstatus\n")
+        process.stdin.flush()
+        for line in process.stdout:
+            if "at step 100" in line:
+                break
+        process.send_signal(signal.SIGSTOP)  # files may be on their way
+        os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+        self.assertTrue((folder / "surface.pvd").exists())
         shutil.rmtree(folder)
         process.send_signal(signal.SIGCONT)
-        errors = process.communicate(timeout=60)[1]
+        process.stdin.write("run\n")
+        errors = process.communicate(timeout=PATIENCE)[1]
         self.assertEqual(process.returncode, 0, errors)
         self.assertIn("was removed during the run", errors)
         self.must_be_unharmed("run")

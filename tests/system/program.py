@@ -7,6 +7,8 @@ import subprocess
 import tempfile
 import unittest
 
+PATIENCE = 120  # s until a test gives up on something; nothing is measured
+
 PROGRAM = os.environ["MELTSCOPE_PROGRAM"]
 SCENARIOS = pathlib.Path(__file__).resolve().parents[2] / "scenarios"
 QUICK_LOOK = SCENARIOS / "quick_look.toml"
@@ -19,7 +21,7 @@ SMALL = ["--set", "domain.cell_size=40 um", "--set", "time.max_step=4 us", "--se
 def meltscope(*arguments, **options):
     """Runs the program to its end; the result has returncode, stdout and stderr (text)."""
     words = [PROGRAM, *map(str, arguments)]
-    return subprocess.run(words, capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL, **options)
+    return subprocess.run(words, capture_output=True, text=True, timeout=2 * PATIENCE, stdin=subprocess.DEVNULL, **options)
 
 
 class ProgramTest(unittest.TestCase):

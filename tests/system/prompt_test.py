@@ -8,8 +8,8 @@ import termios
 import time
 import unittest
 
-from program import checkpoints
-from steered import PATIENCE, Steered, run_words
+from program import PATIENCE, checkpoints
+from steered import Steered, run_words
 from terminal import Terminal
 
 
@@ -54,7 +54,7 @@ class Prompt(Steered):
         terminal.wait()
 
     def test_ctrl_c_pauses_and_again_stops_with_a_checkpoint(self):
-        terminal = self.start("run", "--set", "time.end=40 ms")
+        terminal = self.start("run", "--set", "time.end=1 s")
         terminal.type("run\r")
         terminal.expect("running from")
         terminal.type("\x03")
@@ -64,7 +64,7 @@ class Prompt(Steered):
         self.assertEqual(checkpoints(self.folder / "run")[-1].name, f"step_{step:09d}.h5")
 
     def test_the_prompt_is_usable_while_the_run_goes_on_and_output_does_not_tear_the_line(self):
-        terminal = self.start("run", "--set", "time.end=40 ms")
+        terminal = self.start("run", "--set", "time.end=1 s")
         terminal.type("step 60\r")
         terminal.type("power 2")  # not finished when the pause is announced
         terminal.expect(r"paused at step 60")
@@ -80,17 +80,17 @@ class Prompt(Steered):
         self.assertIn("meltscope> power 222", terminal.rows())  # without the status that stood beside it
 
     def test_a_line_of_several_rows_stays_whole_when_output_comes(self):
-        terminal = self.start("run", "--set", "time.end=40 ms", columns=40)
+        terminal = self.start("run", "--set", "time.end=1 s", columns=40)
         terminal.type("step 60\r")
-        line = "at 30 ms path line 0.4 mm 0.3 mm speed 1.2 m/s power 150 W"
+        line = "at 900 ms path line 0.4 mm 0.3 mm speed 1.2 m/s power 150 W"
         terminal.type(line)
         terminal.expect(r"paused at step 60")
         prompt = f"meltscope> {line}"
         for row in (prompt[:40], prompt[40:]):
             terminal.expect_row(row.rstrip())
         terminal.type("\r")
-        terminal.expect("waits for 30 ms")
-        self.assertEqual(1, sum(row.startswith("meltscope> at 30 ms") for row in terminal.rows()))
+        terminal.expect("waits for 900 ms")
+        self.assertEqual(1, sum(row.startswith("meltscope> at 900 ms") for row in terminal.rows()))
         terminal.type("quit\r")
         self.assertEqual(terminal.wait(), 3)
 
@@ -110,7 +110,7 @@ class Prompt(Steered):
         self.assertEqual(terminal.wait(), 3)
 
     def test_a_window_that_is_closed_ends_the_run_with_a_checkpoint(self):
-        terminal = self.start("run", "--set", "time.end=40 ms")
+        terminal = self.start("run", "--set", "time.end=1 s")
         terminal.type("step 3\r")
         terminal.expect("paused at step 3")
         terminal.hang_up()
@@ -144,7 +144,7 @@ class Prompt(Steered):
         self.assertNotIn("\033", terminal.seen)
 
     def test_ctrl_c_pauses_and_again_stops_at_a_dumb_terminal(self):
-        terminal = self.start("run", "--set", "time.end=40 ms", term="dumb")
+        terminal = self.start("run", "--set", "time.end=1 s", term="dumb")
         terminal.type("run\n")
         terminal.expect("running from")
         terminal.type("\x03")

@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints, meltscope
+from program import PATIENCE, PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints, meltscope
 
 ENDLESS = ["--set", "time.end=10 s", "--set", "output.every=1 s", "--set", "domain.cell_size=40 um", "--set",
            "time.max_step=1 us"]
@@ -70,14 +70,14 @@ class Outputs(ProgramTest):
         text = b""
         while True:
             try:
-                part = os.read(master, 65536) if select.select([master], [], [], 60)[0] else b""
+                part = os.read(master, 65536) if select.select([master], [], [], PATIENCE)[0] else b""
             except OSError:  # the other end is closed
                 break
             if not part:
                 break
             text += part
         os.close(master)
-        self.assertEqual(process.wait(timeout=60), 0, text)
+        self.assertEqual(process.wait(timeout=PATIENCE), 0, text)
         return text.decode()
 
 
@@ -116,7 +116,7 @@ class Stops(ProgramTest):
         return process
 
     def wait_for(self, condition):
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + PATIENCE
         while not condition():
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.02)
@@ -126,7 +126,7 @@ class Stops(ProgramTest):
             with self.subTest(number=number):
                 process = self.start_endless()
                 process.send_signal(number)
-                _, errors = process.communicate(timeout=60)
+                _, errors = process.communicate(timeout=PATIENCE)
                 self.assertEqual(process.returncode, 3, errors)
                 summary = json.loads((self.folder / "run" / "run.json").read_text())
                 self.assertEqual(summary["outcome"], "stopped")
@@ -142,7 +142,7 @@ class Stops(ProgramTest):
         self.wait_for(lambda: checkpoints(self.folder / "run"))
         self.assertIsNone(process.poll())
         process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=60)
+        process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, 3)
 
     def test_wall_limit_stops_with_a_checkpoint(self):
@@ -157,7 +157,7 @@ class Stops(ProgramTest):
                                    self.folder / "run")
         self.assertIn(str(process.pid), message)
         process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=60)
+        process.communicate(timeout=PATIENCE)
 
 
 if __name__ == "__main__":

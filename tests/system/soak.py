@@ -100,6 +100,7 @@ def soak(moments, seed, pictures, folder):
     duration = time.monotonic() - begin
     expected = contents(whole)
     print(f"seed {seed}; uninterrupted: {duration:.2f} s, {len(expected)} files", flush=True)
+    latest = duration  # of the moments; follows the speed of the machine, on which others may be busy
 
     run, copy = folder / "killed", folder / "copy"
     made, without_checkpoint, tries = 0, 0, 0
@@ -108,11 +109,13 @@ def soak(moments, seed, pictures, folder):
         if tries > 4 * moments + 20:
             raise AssertionError(f"only {made} of {tries} runs were still going when they were to be killed")
         checkpoint = last_checkpoint(run) if run.exists() else None
-        if not kill_at(command(run, pictures, checkpoint), dice.uniform(0.02, duration)):
+        if not kill_at(command(run, pictures, checkpoint), dice.uniform(0.02, latest)):
             must_equal(contents(run), expected, "a run that was killed again and again")
             shutil.rmtree(run)
+            latest = max(0.05, 0.8 * latest)
             continue
         made += 1
+        latest *= 1.1
         opened, named = must_be_whole(run) if run.exists() else (0, 0)
         without_checkpoint += opened == 0
         shutil.rmtree(copy, ignore_errors=True)

@@ -2,10 +2,9 @@
 
 import subprocess
 
-from program import PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints
+from program import PATIENCE, PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints
 
 AT_END = ["--set", "checkpoint.every=1 s"]
-PATIENCE = 60  # s until a test gives up; nothing is measured
 
 
 def run_words(folder, *arguments):

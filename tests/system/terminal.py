@@ -12,8 +12,13 @@ import time
 
 import pyte
 
-PATIENCE = 60  # s until a test gives up; nothing is measured
+from program import PATIENCE
+
 ROWS = 40
+
+
+def set_size(terminal, columns):
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, columns, 0, 0))
 
 
 class Terminal:
@@ -25,16 +30,16 @@ class Terminal:
         environment.pop("LINES", None)
         self.pid, self.master = pty.fork()
         if self.pid == 0:
+            set_size(pty.STDIN_FILENO, columns)
             os.execve(words[0], words, environment)
         self.seen = ""
         self.mark = 0
         self.screen = pyte.Screen(columns, ROWS)
         self.stream = pyte.Stream(self.screen)
-        self.resize(columns)
 
     def resize(self, columns):
         self.screen.resize(ROWS, columns)
-        fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, columns, 0, 0))
+        set_size(self.master, columns)
 
     def rows(self):
         """The rows of the screen that hold something."""

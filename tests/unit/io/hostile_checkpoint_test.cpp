@@ -131,6 +131,12 @@ TEST(HostileCheckpoint, links_to_other_files_are_not_followed) {
                     H5Lcreate_soft("/particles/volume", file, "/particles/mass", H5P_DEFAULT, H5P_DEFAULT);
                 }),
                 "link to elsewhere");
+    for (const char* group : {"/particles", "/grid", "/steering", "/ledger"})
+        expect_word(refusal_after([&](hid_t file) {
+                        H5Lmove(file, group, file, "/moved", H5P_DEFAULT, H5P_DEFAULT);
+                        H5Lcreate_soft("/moved", file, group, H5P_DEFAULT, H5P_DEFAULT);
+                    }),
+                    std::string(group) + " is a link to elsewhere");
 }
 
 } // namespace

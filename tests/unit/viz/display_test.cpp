@@ -11,7 +11,7 @@ namespace {
 
 TEST(Child, output_comes_up_to_the_character_waited_for) {
     Child child({"/bin/sh", "-c", "printf '42\\nmore' >&3; sleep 20", "sh", Child::pipe_word});
-    EXPECT_EQ(child.read_until('\n', std::chrono::seconds(10)), "42\n");
+    EXPECT_EQ(child.read_until('\n', std::chrono::seconds(60)), "42\n");
 }
 
 TEST(Child, a_silent_child_costs_no_more_than_the_timeout) {

@@ -132,12 +132,14 @@ void alter(hid_t file, const char* name, fuzz::Bytes& bytes) {
 void rewrite(hid_t file, const char* name, fuzz::Bytes& bytes) {
     std::string text;
     if (const hid_t old = H5Dopen2(file, name, H5P_DEFAULT); old >= 0) {
-        const hid_t type = H5Dget_type(old);
-        if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
+        const hid_t type = H5Dget_type(old), space = H5Dget_space(old);
+        const bool one = H5Sget_simple_extent_npoints(space) == 1; // not so after replace()
+        if (one && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
             text.resize(H5Tget_size(type));
             H5Dread(old, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data());
             text.resize(std::min(text.size(), text.find('\0')));
         }
+        H5Sclose(space);
         H5Tclose(type);
         H5Dclose(old);
     }

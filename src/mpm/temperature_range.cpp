@@ -23,18 +23,20 @@ struct Bounds {
     }
 };
 
-/// Bounds of the node temperatures around a group; nodes without one (zero) are left out.
-Bounds node_bounds(const Grid& grid, const LaneGroup& group, const double* temperature, bool& finite) {
-    Lanes low(unbounded), high(-unbounded), sum(0.0);
+/// Bounds of the node temperatures around a group; nodes without one (zero) are left out. Adds to `sum`, of
+/// absolute values, from which what is not a number does not go away as it does from comparisons. The middle
+/// nodes along x suffice: a particle with such an energy has spread it to all of its nodes.
+Bounds node_bounds(const Grid& grid, const LaneGroup& group, const double* temperature, Lanes& sum) {
+    Lanes low(unbounded), high(-unbounded);
     for (int k = 0; k < 3; ++k)
         for (int j = 0; j < 3; ++j)
             for (int i = 0; i < 3; ++i) {
                 const Lanes t = load(temperature + group.corner + i + j * grid.stride_y + k * grid.stride_z);
                 low = min(low, select(t == 0.0, Lanes(unbounded), t));
                 high = max(high, select(t == 0.0, Lanes(-unbounded), t));
-                sum += abs(t);
+                if (i == 1)
+                    sum += abs(t);
             }
-    finite = std::isfinite(reduce(sum)); // comparisons with what is not a number say nothing
     return {hmin(low), hmax(high)};
 }
 
@@ -74,15 +76,13 @@ TemperatureRange particle_temperature_range(const Grid& grid, const Particles& p
         // What a thread has seen says which groups it need not look into; the rounded range of all is the
         // same whichever thread saw what.
         Bounds seen;
-        bool seen_finite = true;
+        Lanes sum(0.0);
 #pragma omp for schedule(dynamic, 1) nowait
         for (std::size_t r = 0; r < particles.awake.runs.size(); ++r)
             for (std::int64_t g = particles.awake.runs[r].first_group; g < particles.awake.runs[r].last_group;
                  ++g) {
                 const LaneGroup& group = particles.layout.groups[g];
-                bool finite = true;
-                const Bounds bounds = node_bounds(grid, group, temperature, finite);
-                seen_finite = seen_finite && finite;
+                const Bounds bounds = node_bounds(grid, group, temperature, sum);
                 if (down_to_whole_kelvin(bounds.low) < seen.low ||
                     up_to_whole_kelvin(bounds.high) > seen.high) {
                     const Bounds exact = particle_bounds(grid, particles, lattices, group, temperature);
@@ -92,7 +92,7 @@ TemperatureRange particle_temperature_range(const Grid& grid, const Particles& p
 #pragma omp critical
         {
             all.include(seen);
-            all_finite = all_finite && seen_finite;
+            all_finite = all_finite && std::isfinite(reduce(sum));
         }
     }
     return {all.low, all.high, all_finite};

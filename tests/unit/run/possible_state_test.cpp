@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace meltscope {
@@ -36,8 +37,11 @@ void expect_holds(const std::string& text, const std::vector<std::string>& words
 }
 
 TEST(PossibleState, an_energy_that_is_not_a_number_stops_the_run_within_two_steps) {
-    expect_holds(stop_of_poisoned(777, std::numeric_limits<double>::quiet_NaN()),
-                 {"after step ", "t = ", "particle ", " at (", ") m, of steel", "nan", "Likely cause: "});
+    const std::int64_t last = steel_block().particles.count() - 1; // corners and whatever lies between
+    for (std::int64_t particle = 0; particle <= last;
+         particle = particle < last ? std::min(particle + 97, last) : last + 1)
+        expect_holds(stop_of_poisoned(particle, std::numeric_limits<double>::quiet_NaN()),
+                     {"after step ", "t = ", "particle ", " at (", ") m, of steel", "nan", "Likely cause: "});
 }
 
 TEST(PossibleState, an_infinite_energy_stops_the_run) {

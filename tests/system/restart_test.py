@@ -37,10 +37,11 @@ class Restart(ProgramTest):
                 self.interrupted(f"after_{steps}", steps)
                 self.assert_same(self.folder / "whole", self.folder / f"after_{steps}")
 
-    def test_two_restarts_equal_none(self):
+    def test_two_restarts_equal_none_also_with_another_number_of_threads(self):
         self.run_small("whole", *AT_END)
         self.run_small("twice", *AT_END, "--steps", 9)
-        self.must_succeed("run", "--restart", checkpoints(self.folder / "twice")[-1], "--no-render", "--steps", 20)
+        self.must_succeed("run", "--restart", checkpoints(self.folder / "twice")[-1], "--no-render", "--steps", 20,
+                          "--threads", 2)
         self.must_succeed("run", "--restart", checkpoints(self.folder / "twice")[-1], "--no-render")
         self.assert_same(self.folder / "whole", self.folder / "twice")
 

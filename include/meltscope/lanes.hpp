@@ -31,9 +31,15 @@ inline void store(const Lanes& lanes, double* first) {
 
 /// Lane by lane: `yes` where `condition` holds, else `no`.
 inline Lanes select(const Lanes::mask_type& condition, const Lanes& yes, const Lanes& no) {
+#if defined(__clang__) && defined(__AVX512F__)
+    // Under Clang, libstdc++ 12 blends by a bit mask as if it were one yes or no for all lanes (simd_x86.h,
+    // _S_blend_avx512); hence also: no where() besides this one.
+    return Lanes([&](int lane) { return condition[lane] ? yes[lane] : no[lane]; });
+#else
     Lanes result = no;
     where(condition, result) = yes;
     return result;
+#endif
 }
 
 /// For code that serves both a single double and a lane group.

@@ -185,7 +185,7 @@ void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials,
         for (int a = 0; a < count; ++a) {
             const auto present = load(&nodes.material_mass[a][i]) > 0.0;
             store(select(present, energy, Lanes(0.0)), &nodes.energy[a][i]);
-            where(present, temperature) = materials[a].temperature(energy);
+            temperature = select(present, materials[a].temperature(energy), temperature);
         }
         store(temperature, &nodes.temperature[i]);
     });

@@ -63,7 +63,7 @@ void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materia
                     const Lanes room = max(load(&nodes.energy[a][i]) - options.least_energy[a], Lanes(0.0));
                     sharper = min(max(sharper, -room), room);
                 }
-                where(present && solid_or_liquid, result) = sharper;
+                result = select(present && solid_or_liquid, sharper, result);
             }
         }
         store(result, &q[i]);

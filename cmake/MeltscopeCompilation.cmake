@@ -1,7 +1,9 @@
 # One interface target holds how every part of meltscope is compiled.
 add_library(meltscope_compilation INTERFACE)
 target_compile_features(meltscope_compilation INTERFACE cxx_std_20)
-target_compile_options(meltscope_compilation INTERFACE -Wall -Wextra -Wshadow -Wno-psabi
+target_compile_options(meltscope_compilation INTERFACE -Wall -Wextra -Wno-psabi
+                       # Where rooms are compiled whole, one file's names would shadow those of another.
+                       $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>) # GCC 12 sees it in its own AVX-512 headers
 if(MELTSCOPE_WARNINGS_AS_ERRORS)
   target_compile_options(meltscope_compilation INTERFACE -Werror)

@@ -16,7 +16,7 @@ for input in "${inputs[@]}"; do
   fi
 done
 
-./scripts/setup.sh --fuzz
+./scripts/setup.sh --clang
 cmake --preset fuzz
 cmake --build --preset fuzz --target "${inputs[@]/%/_fuzz}"
 

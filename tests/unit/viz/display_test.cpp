@@ -39,7 +39,7 @@ TEST(Child, exit_code_and_errors_of_a_program_are_seen) {
 
 TEST(Display, an_unusable_display_is_refused_before_vtk_sees_it) {
     const test::ScopedVariable no_server("DISPLAY", ":987");
-    EXPECT_THROW(Display(Backend::x11), VizError);
+    EXPECT_THROW(Display{Backend::x11}, VizError);
 }
 
 TEST(Display, without_display_and_xvfb_the_reason_is_told) {

@@ -4,6 +4,7 @@ import os
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 
 from program import PATIENCE, PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints
@@ -92,9 +93,12 @@ class Faults(ProgramTest):
         for line in process.stdout:
             if "at step 100" in line:
                 break
-        process.send_signal(signal.SIGSTOP)  # files may be on their way
+        deadline = time.monotonic() + PATIENCE
+        while not (folder / "surface.pvd").exists():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.01)
+        process.send_signal(signal.SIGSTOP)  # more files may be on their way
         os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
-        self.assertTrue((folder / "surface.pvd").exists())
         shutil.rmtree(folder)
         process.send_signal(signal.SIGCONT)
         process.stdin.write("run\n")

@@ -22,7 +22,7 @@ cmake --build --preset fuzz --target "${inputs[@]/%/_fuzz}"
 
 export OMP_NUM_THREADS=1
 export UDUNITS2_XML_PATH=$PWD/tests/fuzz/units.xml # the whole database takes longer to read than an input
-export LSAN_OPTIONS=suppressions=$PWD/tests/fuzz/leaks.supp:print_suppressions=0
+export LSAN_OPTIONS=suppressions=$PWD/tests/sanitizers/leaks.supp:print_suppressions=0
 result=0
 for input in "${inputs[@]}"; do
   echo "fuzz: $input"

@@ -78,8 +78,8 @@ void find_powers(const Grid& grid, const Particles& particles, const VolumeSourc
             const std::int64_t at = group.first_slot * lane_count + entry;
             if (particles.volume[at] == 0.0)
                 continue;
-            const Vec3 offset(double(entry % lane_count) + particles.offset_x[at], particles.offset_y[at],
-                              particles.offset_z[at]);
+            const Vec3 offset =
+                offset_in_bin(particles, group, at) + Vec3(double(entry % lane_count), 0.0, 0.0);
             reached.power[reached.groups[r].first_power + entry] =
                 power_density(source, power, node + grid.dx * offset) * particles.volume[at];
         }

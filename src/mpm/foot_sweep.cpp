@@ -33,12 +33,18 @@ class Sweep {
   public:
     Sweep(const Grid& grid, const NodeBand& band, const std::vector<Foot>& feet, double reach,
           std::vector<std::int32_t>& nearest)
-        : grid_(grid), band_(band), feet_(feet), nearest_(nearest),
-          squared_(std::make_unique_for_overwrite<double[]>(grid.size)) {
+        : grid_(grid), band_(band), nearest_(nearest) {
+        for (auto* field : {&x_, &y_, &z_, &squared_})
+            *field = std::make_unique_for_overwrite<double[]>(grid.size);
+        // Ghosts and what else lies beside the band have no foot, which says that the rest is not set.
         band_.for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
-            squared_[at] = nearest_[at] < 0
-                               ? reach * reach
-                               : (grid.position(i, j, k) - feet_[nearest_[at]].point).squaredNorm();
+            const Vec3 node = grid.position(i, j, k);
+            const bool has_one = nearest_[at] >= 0;
+            const Vec3 foot = has_one ? feet[nearest_[at]].point : node;
+            x_[at] = foot[0];
+            y_[at] = foot[1];
+            z_[at] = foot[2];
+            squared_[at] = has_one ? (node - foot).squaredNorm() : reach * reach;
         });
     }
 
@@ -47,10 +53,10 @@ class Sweep {
         for (std::int64_t k = 0; k <= grid_.cells[2]; ++k)
             for (std::int64_t j = 0; j <= grid_.cells[1]; ++j) {
                 const Stretch& row = band_.of_row(j, k);
-                for (std::int64_t i = row.first + 1; i <= row.last; ++i)
-                    offer(i, j, k, grid_.index(i, j, k), -1);
-                for (std::int64_t i = row.last - 1; i >= row.first; --i)
-                    offer(i, j, k, grid_.index(i, j, k), 1);
+                if (row.first < row.last) {
+                    hand_on(row.first, row.last, 1, j, k);
+                    hand_on(row.last, row.first, -1, j, k);
+                }
             }
     }
 
@@ -75,45 +81,87 @@ class Sweep {
     }
 
     /// Every node looks at the feet of its 26 neighbours: what a row hands on along an axis can stop short of
-    /// a node whose own foot lies askew.
+    /// a node whose own foot lies askew. Only indices change, so that each is offered what was there before.
     void all_around() {
         const std::vector<std::int32_t> before = nearest_;
-        band_.for_each_node(grid_, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
-            for (std::int64_t c = std::max<std::int64_t>(k - 1, 0); c <= std::min(k + 1, grid_.cells[2]); ++c)
-                for (std::int64_t b = std::max<std::int64_t>(j - 1, 0); b <= std::min(j + 1, grid_.cells[1]);
-                     ++b)
-                    for (std::int64_t a = std::max<std::int64_t>(i - 1, 0);
-                         a <= std::min(i + 1, grid_.cells[0]); ++a)
-                        take(i, j, k, at, before[grid_.index(a, b, c)]);
-        });
+#pragma omp parallel for schedule(dynamic, 1)
+        for (std::int64_t k = 0; k <= grid_.cells[2]; ++k)
+            for (std::int64_t j = 0; j <= grid_.cells[1]; ++j) {
+                const Stretch& row = band_.of_row(j, k);
+                for (std::int64_t c = -1; c <= 1; ++c)
+                    for (std::int64_t b = -1; b <= 1; ++b)
+                        for (std::int64_t a = -1; a <= 1; ++a)
+                            offer<false>(before.data(), row, j, k,
+                                         a + b * grid_.stride_y + c * grid_.stride_z);
+            }
     }
 
   private:
+    /// Along row (j,k) from node `first` to `last`: each takes the foot of the one before if it is nearer.
+    void hand_on(std::int64_t first, std::int64_t last, std::int64_t step, std::int64_t j, std::int64_t k) {
+        const Vec3 row = grid_.position(0, j, k);
+        const std::int64_t start = grid_.index(0, j, k);
+        std::int64_t at = start + first;
+        std::int32_t foot = nearest_[at];
+        double x = x_[at], y = y_[at], z = z_[at];
+        for (std::int64_t i = first + step; i != last + step; i += step) {
+            at = start + i;
+            const double away_x = row[0] + grid_.dx * double(i) - x, away_y = row[1] - y, away_z = row[2] - z;
+            const double squared = away_x * away_x + away_y * away_y + away_z * away_z;
+            if (foot >= 0 && squared < squared_[at]) {
+                squared_[at] = squared;
+                nearest_[at] = foot;
+                x_[at] = x;
+                y_[at] = y;
+                z_[at] = z;
+            } else {
+                foot = nearest_[at];
+                x = x_[at];
+                y = y_[at];
+                z = z_[at];
+            }
+        }
+    }
+
     void offer_to_row(std::int64_t j, std::int64_t k, std::int64_t from) {
-        const Stretch& row = band_.of_row(j, k);
-        for (std::int64_t i = row.first; i <= row.last; ++i)
-            offer(i, j, k, grid_.index(i, j, k), from);
+        offer<true>(nearest_.data(), band_.of_row(j, k), j, k, from);
     }
 
-    void offer(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at, std::int64_t from) {
-        take(i, j, k, at, nearest_[at + from]);
-    }
-
-    void take(std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at, std::int32_t foot) {
-        if (foot < 0 || foot == nearest_[at])
-            return;
-        const double squared = (grid_.position(i, j, k) - feet_[foot].point).squaredNorm();
-        if (squared < squared_[at]) {
-            squared_[at] = squared;
-            nearest_[at] = foot;
+    /// The band's nodes of row (j,k) take the foot of the node `from` further in storage if it is nearer than
+    /// their own. None of them may be offered what another of them takes.
+    template <bool with_places>
+    void offer(const std::int32_t* offered, const Stretch& stretch, std::int64_t j, std::int64_t k,
+               std::int64_t from) {
+        const Vec3 row = grid_.position(0, j, k);
+        const double dx = grid_.dx;
+        const std::int64_t start = grid_.index(0, j, k);
+        double *x = x_.get() + start, *y = y_.get() + start, *z = z_.get() + start;
+        double* least = squared_.get() + start;
+        std::int32_t* nearest = nearest_.data() + start;
+        offered += start;
+#pragma omp simd
+        for (std::int64_t i = stretch.first; i <= stretch.last; ++i) {
+            const std::int32_t foot = offered[i + from];
+            const double foot_x = x[i + from], foot_y = y[i + from], foot_z = z[i + from];
+            const double away_x = row[0] + dx * double(i) - foot_x, away_y = row[1] - foot_y,
+                         away_z = row[2] - foot_z;
+            const double squared = away_x * away_x + away_y * away_y + away_z * away_z;
+            const bool nearer = (foot >= 0) & (squared < least[i]);
+            least[i] = nearer ? squared : least[i];
+            nearest[i] = nearer ? foot : nearest[i];
+            if constexpr (with_places) {
+                x[i] = nearer ? foot_x : x[i];
+                y[i] = nearer ? foot_y : y[i];
+                z[i] = nearer ? foot_z : z[i];
+            }
         }
     }
 
     const Grid& grid_;
     const NodeBand& band_;
-    const std::vector<Foot>& feet_;
     std::vector<std::int32_t>& nearest_;
-    std::unique_ptr<double[]> squared_; // m^2, of the band's nodes only
+    // Of the band's nodes only: m, where their feet are, so that neighbours find them side by side; m^2.
+    std::unique_ptr<double[]> x_, y_, z_, squared_;
 };
 
 } // namespace

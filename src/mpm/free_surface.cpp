@@ -1,54 +1,57 @@
 #include "meltscope/mpm/free_surface.hpp"
 
+#include "tile_flags.hpp"
+
 #include "meltscope/mpm/group_stencils.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace meltscope {
 namespace {
 
-/// Lane groups that may hold particles of the surface, and their entries laid end to end: what is worked out
-/// for these particles alone needs no array over all of them.
-struct SurfaceGroups {
-    std::vector<std::int64_t> group; ///< ascending
-    std::vector<std::int64_t> first; ///< of each lane group of the layout: its first entry here, -1: none
-    std::int64_t entries = 0;
-};
-
 /// phi_hat at a particle lies between those of the 27 nodes around it: a group is left out if they all are
 /// beyond the gate on one side.
-SurfaceGroups find_surface_groups(const Grid& grid, const Particles& particles, const Field& phi_hat) {
+SurfaceAreas find_surface_groups(const Grid& grid, const Particles& particles, const Field& phi_hat) {
+    constexpr unsigned char inward = 1, outward = 2, both = inward | outward; // has nodes this side of a gate
+    TileFlags sides(grid);
+    sides.set(grid, [&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
+        unsigned char flags = 0;
+        for (std::int64_t at = grid.index(i, j, k); at < grid.index(end, j, k); ++at) {
+            flags |= phi_hat[at] <= surface_gate ? inward : 0;
+            flags |= phi_hat[at] >= -surface_gate ? outward : 0;
+        }
+        return flags;
+    });
+    sides.widen();
+
     const auto& groups = particles.layout.groups;
-    SurfaceGroups near;
+    SurfaceAreas near;
     near.first.assign(groups.size(), -1);
 #pragma omp parallel for schedule(static)
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        Lanes least(1.0), most(-1.0);
-        for (int k = 0; k < 3; ++k)
-            for (int j = 0; j < 3; ++j)
-                for (int i = 0; i < 3; ++i) {
-                    const Lanes value =
-                        load(&phi_hat[groups[g].corner + i + j * grid.stride_y + k * grid.stride_z]);
-                    least = min(least, value);
-                    most = max(most, value);
-                }
-        if (any_of(least <= surface_gate && most >= -surface_gate))
+        if (sides[sides.tile_of(groups[g])] != both)
+            continue;
+        const LaneRange around = range_around(grid, phi_hat, groups[g]); // the same of each bin by itself
+        if (any_of(around.least <= surface_gate && around.most >= -surface_gate))
             near.first[g] = 0;
     }
+    std::int64_t entries = 0;
     for (std::size_t g = 0; g < groups.size(); ++g)
         if (near.first[g] == 0) {
             near.group.push_back(std::int64_t(g));
-            near.first[g] = near.entries;
-            near.entries += groups[g].slots * lane_count;
+            near.first[g] = entries;
+            entries += groups[g].slots * lane_count;
         }
+    near.area.assign(entries, 0.0);
     return near;
 }
 
 /// Calls work(stencil, group, first_entry, shift) for each stencil of the surface groups, threads sharing the
 /// groups: entry `at` of the per-particle arrays is entry at + shift here.
 template <class Work>
-void for_each_surface_stencil(const Particles& particles, const SurfaceGroups& near, Work work) {
+void for_each_surface_stencil(const Particles& particles, const SurfaceAreas& near, Work work) {
     const LatticeStencils lattices;
 #pragma omp parallel for schedule(static)
     for (std::size_t n = 0; n < near.group.size(); ++n) {
@@ -60,10 +63,8 @@ void for_each_surface_stencil(const Particles& particles, const SurfaceGroups& n
     }
 }
 
-/// s_p in m^2 of the particles of the surface groups, entry by entry; zero beyond the gate.
-Field surface_weights(const Grid& grid, const Particles& particles, const Field& phi_hat,
-                      const SurfaceGroups& near) {
-    Field weight(near.entries, 0.0);
+/// The areas become s_p in m^2, zero beyond the gate.
+void set_weights(const Grid& grid, const Particles& particles, const Field& phi_hat, SurfaceAreas& near) {
     for_each_surface_stencil(
         particles, near,
         [&](const auto& stencil, const LaneGroup& group, std::int64_t first, std::int64_t shift) {
@@ -75,15 +76,13 @@ Field surface_weights(const Grid& grid, const Particles& particles, const Field&
                 const Lanes slope = sqrt(f.x[p] * f.x[p] + f.y[p] * f.y[p] + f.z[p] * f.z[p]) / grid.dx;
                 store(select(abs(f.value[p]) <= surface_gate, slope * load(&particles.volume[entry]),
                              Lanes(0.0)),
-                      &weight[entry + shift]);
+                      &near.area[entry + shift]);
             }
         });
-    return weight;
 }
 
 /// sum_q N_iq s_q
-Field sum_at_nodes(const Grid& grid, const Particles& particles, const SurfaceGroups& near,
-                   const Field& weight) {
+Field sum_at_nodes(const Grid& grid, const Particles& particles, const SurfaceAreas& near) {
     Field total(grid.size, 0.0);
     const LatticeStencils lattices;
     for_each_block(particles.layout, [&](const LaneBlock& block) {
@@ -96,7 +95,7 @@ Field sum_at_nodes(const Grid& grid, const Particles& particles, const SurfaceGr
             for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
                 std::array<Lanes, std::decay_t<decltype(stencil)>::points> s;
                 for (std::size_t p = 0; p < s.size(); ++p)
-                    s[p] = load(&weight[first + p * lane_count + shift]);
+                    s[p] = load(&near.area[first + p * lane_count + shift]);
                 stencil.scatter_value(s, sums);
             });
             sums.add_to(total.data(), group.corner, grid.stride_y, grid.stride_z);
@@ -107,8 +106,8 @@ Field sum_at_nodes(const Grid& grid, const Particles& particles, const SurfaceGr
 }
 
 /// Turns s_p into a_p = s_p sum_i N_ip A_i / sum_q N_iq s_q, m^2.
-void share_out_areas(const Grid& grid, const Particles& particles, const SurfaceGroups& near,
-                     const Field& area_by_weight, Field& weight) {
+void share_out_areas(const Grid& grid, const Particles& particles, const Field& area_by_weight,
+                     SurfaceAreas& near) {
     for_each_surface_stencil(
         particles, near,
         [&](const auto& stencil, const LaneGroup& group, std::int64_t first, std::int64_t shift) {
@@ -116,7 +115,7 @@ void share_out_areas(const Grid& grid, const Particles& particles, const Surface
             stencil.gather(area_by_weight.data() + group.corner, grid.stride_y, grid.stride_z, share);
             for (std::size_t p = 0; p < share.size(); ++p) {
                 const std::int64_t entry = first + std::int64_t(p) * lane_count + shift;
-                store(share[p] * load(&weight[entry]), &weight[entry]);
+                store(share[p] * load(&near.area[entry]), &near.area[entry]);
             }
         });
 }
@@ -126,38 +125,52 @@ struct Chosen {
     std::vector<std::int64_t> particle, entry;
 };
 
-Chosen choose_particles(const Particles& particles, const SurfaceGroups& near, const Field& area) {
+Chosen choose_particles(const Particles& particles, const SurfaceAreas& near) {
     std::vector<std::int64_t> shift(particles.layout.slots, -1); // of each slot: its first entry
+    std::vector<bool> looked_at(particles.layout.slots); // most particles end here, in memory that stays near
     for (const std::int64_t g : near.group) {
         const LaneGroup& group = particles.layout.groups[g];
-        for (std::int64_t slot = 0; slot < group.slots; ++slot)
+        for (std::int64_t slot = 0; slot < group.slots; ++slot) {
             shift[group.first_slot + slot] = near.first[g] + slot * lane_count;
-    }
-    constexpr std::int64_t chunk = 1 << 16;
-    std::vector<Chosen> of_chunk((particles.count() + chunk - 1) / chunk);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::size_t c = 0; c < of_chunk.size(); ++c)
-        for (std::int64_t q = std::int64_t(c) * chunk;
-             q < std::min(particles.count(), std::int64_t(c + 1) * chunk); ++q) {
-            const std::int64_t place = particles.layout.place[q];
-            const std::int64_t first = shift[place / lane_count];
-            if (first < 0 || !(area[first + place % lane_count] > 0.0))
-                continue;
-            of_chunk[c].particle.push_back(q);
-            of_chunk[c].entry.push_back(first + place % lane_count);
+            looked_at[group.first_slot + slot] = true;
         }
-    Chosen all;
-    for (const Chosen& some : of_chunk) {
-        all.particle.insert(all.particle.end(), some.particle.begin(), some.particle.end());
-        all.entry.insert(all.entry.end(), some.entry.begin(), some.entry.end());
+    }
+    // Twice over chunks of the particles, how many each has and then which: lists that grow take more memory.
+    constexpr std::int64_t chunk = 1 << 14;
+    const std::int64_t chunks = (particles.count() + chunk - 1) / chunk;
+    const auto for_each_chosen = [&](std::int64_t c, auto work) {
+        for (std::int64_t q = c * chunk; q < std::min(particles.count(), (c + 1) * chunk); ++q) {
+            const std::int64_t place = particles.layout.place[q], slot = place / lane_count;
+            if (!looked_at[slot])
+                continue;
+            const std::int64_t entry = shift[slot] + place % lane_count;
+            if (near.area[entry] > 0.0)
+                work(q, entry);
+        }
+    };
+    std::vector<std::int64_t> start(chunks + 1, 0);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::int64_t c = 0; c < chunks; ++c)
+        for_each_chosen(c, [&](std::int64_t, std::int64_t) { ++start[c + 1]; });
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    Chosen all{std::vector<std::int64_t>(start.back()), std::vector<std::int64_t>(start.back())};
+#pragma omp parallel for schedule(dynamic, 1)
+    for (std::int64_t c = 0; c < chunks; ++c) {
+        std::int64_t n = start[c];
+        if (n < start[c + 1])
+            for_each_chosen(c, [&](std::int64_t particle, std::int64_t entry) {
+                all.particle[n] = particle;
+                all.entry[n++] = entry;
+            });
     }
     return all;
 }
 
 /// Foot points and normals of the chosen particles.
-void find_feet(const Grid& grid, const Particles& particles, const SurfaceGroups& near, const Field& phi,
+void find_feet(const Grid& grid, const Particles& particles, const SurfaceAreas& near, const Field& phi,
                const Field& phi_hat, const std::vector<std::int64_t>& entries, SurfaceElements& elements) {
-    std::vector<std::int64_t> element_at(near.entries, -1);
+    std::vector<std::int64_t> element_at(near.area.size(), -1);
+#pragma omp parallel for schedule(static)
     for (std::size_t s = 0; s < entries.size(); ++s)
         element_at[entries[s]] = std::int64_t(s);
     elements.point.resize(entries.size());
@@ -217,12 +230,24 @@ void divide_areas_by(const Grid& grid, const Field& phi, Field& total) {
     mirror_ghosts(grid, Boundary{}, total);
 }
 
+/// The particles of the surface with their foot points, normals and areas.
+void list_elements(const Grid& grid, const Particles& particles, const Field& phi, const Field& phi_hat,
+                   const SurfaceAreas& near, SurfaceElements& elements) {
+    Chosen chosen = choose_particles(particles, near);
+    elements.particle = std::move(chosen.particle);
+    elements.area.resize(chosen.entry.size());
+    for (std::size_t s = 0; s < chosen.entry.size(); ++s)
+        elements.area[s] = near.area[chosen.entry[s]];
+    find_feet(grid, particles, near, phi, phi_hat, chosen.entry, elements);
+}
+
 /// Lays out the points where the heat goes in and finds their weights' normalization.
 void lay_out(const Grid& grid, const Particles& particles, const Nodes& nodes, std::span<const Vec3> points,
              SurfaceElements& elements) {
-    std::vector<std::int16_t> material;
-    for (const std::int64_t q : elements.particle)
-        material.push_back(particles.material[q]);
+    std::vector<std::int16_t> material(points.size());
+#pragma omp parallel for schedule(static)
+    for (std::size_t s = 0; s < points.size(); ++s)
+        material[s] = particles.material[elements.particle[s]];
     elements.layout = make_lane_layout(grid, points, material, 0);
     for (Field* field : {&elements.offset_x, &elements.offset_y, &elements.offset_z, &elements.normalization})
         field->assign(elements.layout.size(), 0.0);
@@ -241,37 +266,50 @@ void lay_out(const Grid& grid, const Particles& particles, const Nodes& nodes, s
         present[i] = nodes.mass[i] > 0.0 ? 1.0 : 0.0;
     // Beyond faces of fixed temperature ghosts have a mass of their own.
     mirror_ghosts(grid, nodes.boundary, present);
-    std::vector<double> sum;
-    interpolate_to_surface(grid, elements, present, sum);
-    for (std::size_t s = 0; s < points.size(); ++s)
-        elements.normalization[elements.layout.place[s]] = 1.0 / sum[s];
+#pragma omp parallel for schedule(static)
+    for (std::size_t g = 0; g < elements.layout.groups.size(); ++g) {
+        const LaneGroup& group = elements.layout.groups[g];
+        for (std::int64_t slot = group.first_slot; slot < group.first_slot + group.slots; ++slot) {
+            std::array<Lanes, 1> sum;
+            point_stencil(elements.offset_x.data(), elements.offset_y.data(), elements.offset_z.data(), slot)
+                .gather(present.data() + group.corner, grid.stride_y, grid.stride_z, sum);
+            double* normalization = &elements.normalization[slot * lane_count];
+            const Lanes counts = load(normalization); // 0: padding
+            store(select(counts > 0.0, counts / select(counts > 0.0, sum[0], Lanes(1.0)), Lanes(0.0)),
+                  normalization);
+        }
+    }
 }
 
 } // namespace
+
+SurfaceAreas find_surface_areas(const Grid& grid, const Particles& particles, const Field& phi,
+                                const Field& phi_hat) {
+    SurfaceAreas near = find_surface_groups(grid, particles, phi_hat);
+    set_weights(grid, particles, phi_hat, near);
+    Field nodal = sum_at_nodes(grid, particles, near);
+    divide_areas_by(grid, phi, nodal);
+    share_out_areas(grid, particles, nodal, near);
+    return near;
+}
 
 FreeSurface find_free_surface(const Grid& grid, const Particles& particles, const Nodes& nodes,
                               const LevelSetOptions& options, bool at_surface) {
     FreeSurface surface;
     surface.phi = signed_distance(grid, particles, options);
-    const Field phi_hat = regularized(grid, surface.phi, options);
-
-    const SurfaceGroups near = find_surface_groups(grid, particles, phi_hat);
-    Field weight = surface_weights(grid, particles, phi_hat, near);
-    Field nodal = sum_at_nodes(grid, particles, near, weight);
-    divide_areas_by(grid, surface.phi, nodal);
-    share_out_areas(grid, particles, near, nodal, weight);
-
     SurfaceElements& elements = surface.elements;
-    const Field& area = weight;
-    Chosen chosen = choose_particles(particles, near, area);
-    elements.particle = std::move(chosen.particle);
-    for (const std::int64_t entry : chosen.entry)
-        elements.area.push_back(area[entry]);
-    find_feet(grid, particles, near, surface.phi, phi_hat, chosen.entry, elements);
-    std::vector<Vec3> places = elements.point;
-    if (!at_surface)
-        for (std::size_t s = 0; s < places.size(); ++s)
-            places[s] = particles.position[elements.particle[s]];
+    {
+        const Field phi_hat = regularized(grid, surface.phi, options);
+        list_elements(grid, particles, surface.phi, phi_hat,
+                      find_surface_areas(grid, particles, surface.phi, phi_hat), elements);
+    }
+    if (at_surface) {
+        lay_out(grid, particles, nodes, elements.point, elements);
+        return surface;
+    }
+    std::vector<Vec3> places(elements.particle.size());
+    for (std::size_t s = 0; s < places.size(); ++s)
+        places[s] = particles.position[elements.particle[s]];
     lay_out(grid, particles, nodes, places, elements);
     return surface;
 }

@@ -171,12 +171,14 @@ LaneLayout make_lane_layout(const Grid& grid, std::span<const Vec3> points,
                     group.corner =
                         grid.index(gx * lane_count - 1, order.rows[row].j - 1, order.rows[row].k - 1);
                     group.first_slot = layout.slots;
+                    group.first_loose = layout.loose_slots;
                     group.slots = on_lattice ? lattice_points : most;
                     group.kind = std::int16_t(m);
                     group.on_lattice = on_lattice;
                     group_at[at] = std::int64_t(layout.groups.size());
                     layout.groups.push_back(group);
                     layout.slots += group.slots;
+                    layout.loose_slots += on_lattice ? 0 : group.slots;
                 }
         range.last_group = std::int64_t(layout.groups.size());
         layout.blocks.push_back(range);

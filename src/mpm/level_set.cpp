@@ -1,9 +1,10 @@
 #include "meltscope/mpm/level_set.hpp"
 
 #include "foot_sweep.hpp"
+#include "tile_flags.hpp"
 
 #include "meltscope/mpm/boundary.hpp"
-#include "meltscope/mpm/nodes.hpp"
+#include "meltscope/mpm/group_stencils.hpp"
 #include "meltscope/mpm/trilinear.hpp"
 
 #include <algorithm>
@@ -27,6 +28,9 @@ constexpr double smoothed_away = 0.25;
 /// Where the volume fraction differs from one by no more than round-off, no surface is near.
 constexpr double round_off = 1e-13;
 
+/// What a tile has among its bins: some that hold material, some that miss some.
+constexpr unsigned char holds = 1, lacks = 2, both = holds | lacks;
+
 /// Walks over the nodes of the box.
 template <class Work>
 void for_each_node(const Grid& grid, Work work) {
@@ -43,14 +47,80 @@ Vec3 central_difference(const Grid& grid, const Field& f, std::int64_t at) {
            (2.0 * grid.dx);
 }
 
+/// Along each axis, of each lattice point of a bin and each node: 1 where the point lies in the box, else 0.
+std::array<std::vector<Field>, 3> lattice_points_in_box(const Grid& grid,
+                                                        const std::vector<double>& offsets) {
+    std::array<std::vector<Field>, 3> in_box;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double offset : offsets) {
+            Field& of_node = in_box[axis].emplace_back(grid.cells[axis] + 1 + lane_count, 0.0);
+            for (std::int64_t n = 0; n <= grid.cells[axis]; ++n)
+                of_node[n] = double(n) + offset > 0.0 && double(n) + offset < double(grid.cells[axis]);
+        }
+    return in_box;
+}
+
+/// Whether all lattice points that the box has in a group's bins are there, each with its share of a cell.
+bool is_full(const Grid& grid, const Particles& particles, const std::array<std::vector<Field>, 3>& in_box,
+             const LaneGroup& group) {
+    if (!group.on_lattice)
+        return false;
+    const std::int64_t i = group.corner % grid.stride_y, j = group.corner % grid.stride_z / grid.stride_y,
+                       k = group.corner / grid.stride_z;
+    const double share = grid.dx * grid.dx * grid.dx / double(group.slots);
+    const double* volume = &particles.volume[group.first_slot * lane_count];
+    for (const Field& z : in_box[2])
+        for (const Field& y : in_box[1])
+            for (const Field& x : in_box[0]) {
+                const Lanes expected = share * y[j] * z[k] * load(&x[i]);
+                if (any_of(abs(load(volume) - expected) > round_off * share))
+                    return false;
+                volume += lane_count;
+            }
+    return true;
+}
+
+/// What the bins around each tile have. A place with groups of two materials counts as not full.
+TileFlags find_fill(const Grid& grid, const Particles& particles) {
+    TileFlags fill(grid);
+    for (std::int64_t tile = 0; tile < fill.count(); ++tile)
+        fill[tile] = lacks;
+    const auto& groups = particles.layout.groups;
+    const auto in_box = lattice_points_in_box(grid, particles.lattice_offset);
+    std::vector<char> full(groups.size());
+#pragma omp parallel for schedule(static)
+    for (std::size_t g = 0; g < groups.size(); ++g)
+        full[g] = is_full(grid, particles, in_box, groups[g]);
+    for (std::size_t g = 0; g < groups.size(); ++g)
+        fill[fill.tile_of(groups[g])] = full[g] ? holds : both;
+    fill.widen();
+    return fill;
+}
+
 /// Distance to the surface in cells as the smoothed volume fraction tells it; good within about one cell.
+/// Particles are looked at only near tiles whose surroundings are neither full nor empty.
 Field smoothed_distance(const Grid& grid, const Particles& particles) {
+    const TileFlags fill = find_fill(grid, particles);
+    TileFlags reached(grid);
+    for (std::int64_t tile = 0; tile < fill.count(); ++tile)
+        reached[tile] = fill[tile] == both;
+    reached.widen();
+
     Field fraction(grid.size, 0.0);
-    scatter_to_nodes(grid, particles, particles.volume, fraction);
+    const LatticeStencils lattices;
+    for_each_block(particles.layout, [&](const LaneBlock& block) {
+        for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
+            const LaneGroup& group = particles.layout.groups[g];
+            if (reached[reached.tile_of(group)])
+                scatter_group(grid, particles, lattices, group, particles.volume, fraction);
+        }
+    });
     fold_ghosts(grid, Boundary{}, AtFixedFaces::leave, fraction);
     const double cell = grid.dx * grid.dx * grid.dx;
     for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
-        const double filled = fraction[at] / (cell * grid.share_in_box(i, j, k));
+        const unsigned char around = fill[fill.tile_of(i, j, k)];
+        const double filled =
+            around == both ? fraction[at] / (cell * grid.share_in_box(i, j, k)) : double(around == holds);
         fraction[at] = filled >= 1.0 - round_off ? -1.5 : distance_of_fraction(filled);
     });
     mirror_ghosts(grid, Boundary{}, fraction);
@@ -128,33 +198,49 @@ void undo_shift_by_curvature(const Grid& grid, const NodeBand& band, Field& phi)
         grid, [&](std::int64_t, std::int64_t, std::int64_t, std::int64_t at) { phi[at] -= shift[at]; });
 }
 
-/// Particles that stand outside the smoothed surface, ascending. Each thread looks through a range of its
-/// own, and only at those of which one of the 27 nodes around lies outside.
-std::vector<std::int64_t> lone_particles(const Grid& grid, const Particles& particles, const Field& phi) {
+/// A particle that stands outside the smoothed surface.
+struct LoneParticle {
+    Index3 node;   // of its bin
+    Vec3 position; // m
+    double volume; // m^3
+};
+
+/// The particles outside the smoothed surface, in the order of the layout. Only groups of which one of the
+/// nodes around lies outside are looked at.
+std::vector<LoneParticle> lone_particles(const Grid& grid, const Particles& particles, const Field& phi) {
     const double outside = smoothed_away * grid.dx;
+    TileFlags some_outside(grid);
+    some_outside.set(grid, [&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
+        const double* first = &phi[grid.index(0, j, k)];
+        return std::any_of(first + i, first + end, [&](double distance) { return distance > outside; });
+    });
+    some_outside.widen();
+
     const auto& groups = particles.layout.groups;
-    std::vector<char> deep(particles.layout.slots, 1); // of each slot
-#pragma omp parallel for schedule(static)
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        Lanes most(-outside);
-        for (int k = 0; k < 3; ++k)
-            for (int j = 0; j < 3; ++j)
-                for (int i = 0; i < 3; ++i)
-                    most =
-                        max(most, load(&phi[groups[g].corner + i + j * grid.stride_y + k * grid.stride_z]));
-        if (any_of(most > outside))
-            std::fill_n(deep.begin() + groups[g].first_slot, groups[g].slots, char(0));
-    }
-    constexpr std::int64_t chunk = 1 << 16;
-    std::vector<std::vector<std::int64_t>> lone((particles.count() + chunk - 1) / chunk);
+    constexpr std::size_t chunk = 256; // groups, so that the order does not depend on the threads
+    std::vector<std::vector<LoneParticle>> lone((groups.size() + chunk - 1) / chunk);
 #pragma omp parallel for schedule(dynamic, 1)
     for (std::size_t c = 0; c < lone.size(); ++c)
-        for (std::int64_t q = std::int64_t(c) * chunk;
-             q < std::min(particles.count(), std::int64_t(c + 1) * chunk); ++q)
-            if (!deep[particles.layout.place[q] / lane_count] &&
-                trilinear(grid, phi, particles.position[q]) > outside)
-                lone[c].push_back(q);
-    std::vector<std::int64_t> all;
+        for (std::size_t g = c * chunk; g < std::min(groups.size(), (c + 1) * chunk); ++g) {
+            if (!some_outside[some_outside.tile_of(groups[g])])
+                continue;
+            const auto may_be = range_around(grid, phi, groups[g]).most > outside; // the same of each bin
+            if (none_of(may_be))
+                continue;
+            const std::int64_t first = groups[g].first_slot * lane_count;
+            for (std::int64_t at = first; at < first + groups[g].slots * lane_count; ++at) {
+                if (!may_be[at % lane_count] || !(particles.volume[at] > 0.0))
+                    continue;
+                const Index3 node(groups[g].corner % grid.stride_y + at % lane_count,
+                                  groups[g].corner % grid.stride_z / grid.stride_y,
+                                  groups[g].corner / grid.stride_z);
+                const Vec3 position = grid.position(node[0], node[1], node[2]) +
+                                      grid.dx * offset_in_bin(particles, groups[g], at);
+                if (trilinear(grid, phi, position) > outside)
+                    lone[c].push_back({node, position, particles.volume[at]});
+            }
+        }
+    std::vector<LoneParticle> all;
     for (const auto& of_chunk : lone)
         all.insert(all.end(), of_chunk.begin(), of_chunk.end());
     return all;
@@ -163,19 +249,17 @@ std::vector<std::int64_t> lone_particles(const Grid& grid, const Particles& part
 /// Particles that stand outside the smoothed surface become balls, united with the rest.
 void unite_lone_particles(const Grid& grid, const Particles& particles, const LevelSetOptions& options,
                           Field& phi) {
-    for (const std::int64_t q : lone_particles(grid, particles, phi)) {
-        const Vec3& centre = particles.position[q];
-        const double radius = (options.radius - 0.5) * std::cbrt(particles.volume[particles.layout.place[q]]);
-        const BinPlace bin = bin_place(grid, centre);
-        const auto low = [&](int axis) { return std::max<std::int64_t>(0, bin.node[axis] - 4); };
+    for (const LoneParticle& particle : lone_particles(grid, particles, phi)) {
+        const double radius = (options.radius - 0.5) * std::cbrt(particle.volume);
+        const auto low = [&](int axis) { return std::max<std::int64_t>(0, particle.node[axis] - 4); };
         const auto high = [&](int axis) {
-            return std::min<std::int64_t>(grid.cells[axis], bin.node[axis] + 4);
+            return std::min<std::int64_t>(grid.cells[axis], particle.node[axis] + 4);
         };
         for (std::int64_t k = low(2); k <= high(2); ++k)
             for (std::int64_t j = low(1); j <= high(1); ++j)
                 for (std::int64_t i = low(0); i <= high(0); ++i) {
                     double& value = phi[grid.index(i, j, k)];
-                    value = std::min(value, (grid.position(i, j, k) - centre).norm() - radius);
+                    value = std::min(value, (grid.position(i, j, k) - particle.position).norm() - radius);
                 }
     }
 }

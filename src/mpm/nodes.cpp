@@ -20,19 +20,6 @@ std::vector<std::int64_t> mixed_nodes(const Grid& grid, const std::vector<Field>
     return mixed;
 }
 
-/// Adds sum_p N_ip value_p over one group.
-void scatter_group(const Grid& grid, const Particles& particles, const LatticeStencils& lattices,
-                   const LaneGroup& group, const Field& value, Field& field) {
-    NodeSums sums;
-    for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
-        std::array<Lanes, std::decay_t<decltype(stencil)>::points> s;
-        for (std::size_t p = 0; p < s.size(); ++p)
-            s[p] = load(&value[first + p * lane_count]);
-        stencil.scatter_value(s, sums);
-    });
-    sums.add_to(field.data(), group.corner, grid.stride_y, grid.stride_z);
-}
-
 } // namespace
 
 double mixture_temperature(const std::vector<EquationOfState>& materials,
@@ -64,14 +51,6 @@ double mixture_temperature(const std::vector<EquationOfState>& materials,
         t = next;
     }
     return t;
-}
-
-void scatter_to_nodes(const Grid& grid, const Particles& particles, const Field& value, Field& field) {
-    const LatticeStencils lattices;
-    for_each_block(particles.layout, [&](const LaneBlock& block) {
-        for (std::int64_t g = block.first_group; g < block.last_group; ++g)
-            scatter_group(grid, particles, lattices, particles.layout.groups[g], value, field);
-    });
 }
 
 void add_node_mass(const Grid& grid, const Particles& particles, const GroupRuns& groups, int material,

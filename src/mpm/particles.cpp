@@ -1,5 +1,7 @@
 #include "meltscope/mpm/particles.hpp"
 
+#include <numeric>
+
 namespace meltscope {
 
 Particles make_particles(const Grid& grid, ParticleList list, int lattice) {
@@ -7,20 +9,30 @@ Particles make_particles(const Grid& grid, ParticleList list, int lattice) {
     particles.layout = make_lane_layout(grid, list.position, list.material, lattice);
     particles.awake = all_groups(particles.layout);
     particles.lattice = lattice;
+    particles.lattice_offset = lattice_offsets(lattice);
     const std::int64_t size = particles.layout.size();
-    for (Field* field : {&particles.offset_x, &particles.offset_y, &particles.offset_z, &particles.mass,
-                         &particles.volume, &particles.specific_energy})
+    for (Field* field : {&particles.mass, &particles.volume, &particles.specific_energy})
         field->assign(size, 0.0);
+    for (Field* field : {&particles.offset_x, &particles.offset_y, &particles.offset_z})
+        field->assign(particles.layout.loose_slots * lane_count, 0.0);
+    std::vector<std::int64_t> loose_slot(particles.layout.slots, -1);
+    for (const LaneGroup& group : particles.layout.groups)
+        if (!group.on_lattice)
+            std::iota(&loose_slot[group.first_slot], &loose_slot[group.first_slot] + group.slots,
+                      group.first_loose);
 #pragma omp parallel for schedule(static)
     for (std::int64_t q = 0; q < list.size(); ++q) {
         const std::int64_t at = particles.layout.place[q];
-        const BinPlace place = bin_place(grid, list.position[q]);
-        particles.offset_x[at] = place.offset[0];
-        particles.offset_y[at] = place.offset[1];
-        particles.offset_z[at] = place.offset[2];
         particles.mass[at] = list.mass[q];
         particles.volume[at] = list.volume[q];
         particles.specific_energy[at] = list.specific_energy[q];
+        const std::int64_t loose = loose_slot[at / lane_count];
+        if (loose < 0)
+            continue;
+        const BinPlace place = bin_place(grid, list.position[q]);
+        particles.offset_x[loose * lane_count + at % lane_count] = place.offset[0];
+        particles.offset_y[loose * lane_count + at % lane_count] = place.offset[1];
+        particles.offset_z[loose * lane_count + at % lane_count] = place.offset[2];
     }
     if (!list.powder.empty()) {
         particles.powder.assign(size, 0.0);
@@ -28,15 +40,30 @@ Particles make_particles(const Grid& grid, ParticleList list, int lattice) {
             particles.powder[particles.layout.place[q]] = list.powder[q] ? 1.0 : 0.0;
     }
     particles.position = std::move(list.position);
-    particles.id = std::move(list.id);
+    // Ascending from 0 to count - 1 they need no memory.
+    if (!list.id.empty() && (list.id.front() != 0 || list.id.back() != particles.count() - 1))
+        particles.id = std::move(list.id);
     particles.material = std::move(list.material);
     return particles;
+}
+
+Vec3 offset_in_bin(const Particles& particles, const LaneGroup& group, std::int64_t at) {
+    const std::int64_t slot = at / lane_count - group.first_slot;
+    if (group.on_lattice) {
+        const std::int64_t n = particles.lattice;
+        return {particles.lattice_offset[slot % n], particles.lattice_offset[slot / n % n],
+                particles.lattice_offset[slot / (n * n)]};
+    }
+    const std::int64_t loose = (group.first_loose + slot) * lane_count + at % lane_count;
+    return {particles.offset_x[loose], particles.offset_y[loose], particles.offset_z[loose]};
 }
 
 ParticleList list_particles(const Particles& particles) {
     ParticleList list;
     list.position = particles.position;
-    list.id = particles.id;
+    list.id.resize(particles.count());
+    for (std::int64_t q = 0; q < particles.count(); ++q)
+        list.id[q] = particles.id_of(q);
     list.material = particles.material;
     const std::int64_t count = particles.count();
     list.mass.resize(count);

@@ -196,7 +196,7 @@ void sample_particles(const Simulation& s, ParticleSelection selection, const Fi
         sample.specific_energy[n] = particles.specific_energy[at];
         sample.liquid_fraction[n] = s.eos[particles.material[q]].liquid_fraction(temperature[at]);
         sample.phi_hat[n] = phi_hat[at];
-        sample.id[n] = particles.id[q];
+        sample.id[n] = particles.id_of(q);
         sample.material[n] = particles.material[q];
     }
 }

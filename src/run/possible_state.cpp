@@ -59,7 +59,7 @@ void require_possible(const Simulation& s, const ReachedTemperatures& reached) {
         fmt::format("after step {}, t = {:.6g} s, particle {} at ({:.6g}, {:.6g}, {:.6g}) m, of {}, has an "
                     "impossible energy: "
                     "{:.6g} J/kg is {:.6g} K, and the nodes around it are at {:.6g} K. Likely cause: {}",
-                    s.step, s.time, s.particles.id[q], x[0], x[1], x[2],
+                    s.step, s.time, s.particles.id_of(q), x[0], x[1], x[2],
                     s.parameters.materials[s.particles.material[q]].name,
                     s.particles.specific_energy[s.particles.layout.place[q]], offender.own, offender.around,
                     likely_cause(offender)));

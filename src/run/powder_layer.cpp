@@ -181,7 +181,7 @@ std::int64_t add_layer(Simulation& s, const PowderLayer& layer) {
     const double volume = std::pow(lattice.spacing, 3);
     const double density = s.eos[layer.material].density * (layer.homogenised ? layer.packing : 1.0);
     const double energy = s.eos[layer.material].energy(layer.temperature);
-    std::int64_t id = s.particles.id.empty() ? 0 : s.particles.id.back() + 1;
+    std::int64_t id = s.particles.count() == 0 ? 0 : s.particles.id_of(s.particles.count() - 1) + 1;
     ParticleList list;
     std::vector<std::int16_t> sites(lattice.count[0] * lattice.count[1]);
     for (std::int64_t k = *lowest; k < lattice.count[2] && relief.lower_edge(2, k) < top; ++k) {

@@ -261,7 +261,7 @@ Estimate estimate(const Scenario& scenario) {
         volume += domain[0] * domain[1] * scheduled.layer.thickness;
     e.particles_at_most = std::int64_t(std::min(volume, domain.prod()) / site * (1.0 + 1e-9));
     // Measured: arrays of the step, the list they are made from, nodal fields and their temporaries.
-    e.bytes = 190.0 * double(e.particles_at_most) + 200.0 * double(grid.size);
+    e.bytes = 140.0 * double(e.particles_at_most) + 200.0 * double(grid.size);
     return e;
 }
 

@@ -28,18 +28,30 @@ struct ElementHeat {
     std::vector<double> amount;        ///< W or J
 };
 
+/// What the particles near the surface have of it. Their lane groups' entries lie end to end: what is worked
+/// out for them alone needs no array over all particles.
+struct SurfaceAreas {
+    std::vector<std::int64_t> group; ///< lane groups that may hold particles of the surface, ascending
+    std::vector<std::int64_t> first; ///< of each lane group of the layout: its first entry here, -1: none
+    Field area;                      ///< a_p, m^2; zero for particles beyond the gate
+};
+
 /// Steps 1 and 2 and what follows from them; stands as long as the particles do.
 struct FreeSurface {
     Field phi; ///< phi_i, m; phi_hat_i follows from it, see regularized()
     SurfaceElements elements;
 };
 
-/// Finds the free surface. `at_surface`: heat goes in at the foot points x_s; otherwise in the volume of the
-/// particles of the band.
+/// Step 2: the areas that the particles near the surface stand for.
 ///
 /// A node's share of the surface is A_i = dx^3 |grad phi_i| hat(phi_i), hat(s) = max(0, 1 - |s|/w)/w, w =
 /// (|n_x| + |n_y| + |n_z|) dx, and a particle takes a_p = sum_i A_i N_ip s_p / sum_q N_iq s_q with s_p = v_p
 /// |sum_i phi_hat_i grad N_ip| if |phi_hat_p| <= 0.45.
+SurfaceAreas find_surface_areas(const Grid& grid, const Particles& particles, const Field& phi,
+                                const Field& phi_hat);
+
+/// Finds the free surface. `at_surface`: heat goes in at the foot points x_s; otherwise in the volume of the
+/// particles of the band.
 FreeSurface find_free_surface(const Grid& grid, const Particles& particles, const Nodes& nodes,
                               const LevelSetOptions& options, bool at_surface);
 

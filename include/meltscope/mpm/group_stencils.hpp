@@ -58,10 +58,40 @@ void for_each_stencil(const Particles& particles, const LatticeStencils& lattice
             return work(lattices.four, first);
         }
     }
-    for (std::int64_t slot = group.first_slot; slot < group.first_slot + group.slots; ++slot)
+    for (std::int64_t slot = 0; slot < group.slots; ++slot)
         work(point_stencil(particles.offset_x.data(), particles.offset_y.data(), particles.offset_z.data(),
-                           slot),
-             slot * lane_count);
+                           group.first_loose + slot),
+             (group.first_slot + slot) * lane_count);
+}
+
+/// Adds sum_p N_ip value_p over one group to the nodes.
+inline void scatter_group(const Grid& grid, const Particles& particles, const LatticeStencils& lattices,
+                          const LaneGroup& group, const Field& value, Field& field) {
+    NodeSums sums;
+    for_each_stencil(particles, lattices, group, [&](const auto& stencil, std::int64_t first) {
+        std::array<Lanes, std::decay_t<decltype(stencil)>::points> s;
+        for (std::size_t p = 0; p < s.size(); ++p)
+            s[p] = load(&value[first + p * lane_count]);
+        stencil.scatter_value(s, sums);
+    });
+    sums.add_to(field.data(), group.corner, grid.stride_y, grid.stride_z);
+}
+
+/// Least and largest value of a nodal field at the 27 nodes that the particles of each bin reach.
+struct LaneRange {
+    Lanes least, most;
+};
+
+inline LaneRange range_around(const Grid& grid, const Field& field, const LaneGroup& group) {
+    LaneRange range{load(&field[group.corner]), load(&field[group.corner])};
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                const Lanes value = load(&field[group.corner + i + j * grid.stride_y + k * grid.stride_z]);
+                range.least = min(range.least, value);
+                range.most = max(range.most, value);
+            }
+    return range;
 }
 
 } // namespace meltscope

@@ -13,6 +13,7 @@ namespace meltscope {
 struct LaneGroup {
     std::int64_t corner = 0; ///< storage index of node (-1,-1,-1) of lane 0's bin
     std::int64_t first_slot = 0;
+    std::int64_t first_loose = 0; ///< of a group that is not on the lattice: its first slot among those
     std::int32_t slots = 0;
     std::int16_t kind = 0;
     bool on_lattice = false; ///< slot s is the lattice point s of the bin, the same in every lane
@@ -35,6 +36,7 @@ struct LaneLayout {
         colour_start{};              ///< blocks of colour c are colour_start[c] .. colour_start[c+1]
     std::vector<std::int64_t> place; ///< of each point: slot * lane_count + lane
     std::int64_t slots = 0;
+    std::int64_t loose_slots = 0; ///< of the groups that are not on the lattice
 
     std::int64_t size() const { return slots * lane_count; } ///< entries of a per-point array in this layout
 };

@@ -88,7 +88,4 @@ void favre_mean(const Grid& grid, const std::vector<EquationOfState>& materials,
 double mixture_temperature(const std::vector<EquationOfState>& materials,
                            const std::vector<Field>& material_mass, std::int64_t node, double total);
 
-/// Adds sum_p N_ip value_p of a per-particle array (layout order) to `field`.
-void scatter_to_nodes(const Grid& grid, const Particles& particles, const Field& value, Field& field);
-
 } // namespace meltscope

@@ -74,6 +74,40 @@ TEST(LaneLayout, lattice_groups_hold_their_points_in_the_order_of_the_lattice) {
     EXPECT_LT(on_lattice, std::int64_t(layout.place.size())) << "the ball is no lattice";
 }
 
+TEST(LaneLayout, offsets_lead_from_the_bins_nodes_to_the_particles_on_the_lattice_and_off_it) {
+    const Grid& grid = sample_grid();
+    ParticleList list = sample_points();
+    list.mass.assign(list.position.size(), 1.0);
+    list.specific_energy = list.mass;
+    const Particles particles = make_particles(grid, list, 2);
+    std::array<std::int64_t, 2> met{};
+    for (std::int64_t q = 0; q < particles.count(); ++q) {
+        const std::int64_t at = particles.layout.place[q], slot = at / lane_count;
+        const auto group = std::find_if(
+            particles.layout.groups.begin(), particles.layout.groups.end(),
+            [&](const LaneGroup& g) { return slot >= g.first_slot && slot < g.first_slot + g.slots; });
+        const std::array<std::int32_t, 3> node = bin_place(grid, particles.position[q]).node;
+        const Vec3 place =
+            grid.position(node[0], node[1], node[2]) + grid.dx * offset_in_bin(particles, *group, at);
+        EXPECT_LT((place - particles.position[q]).norm(), 1e-6 * grid.dx);
+        ++met[group->on_lattice];
+    }
+    EXPECT_GT(met[0], 0);
+    EXPECT_GT(met[1], 0);
+}
+
+TEST(LaneLayout, ids_are_kept_whether_they_are_the_usual_ones_or_not) {
+    ParticleList list = sample_points();
+    list.mass.assign(list.position.size(), 1.0);
+    list.specific_energy = list.mass;
+    EXPECT_EQ(list_particles(make_particles(sample_grid(), list, 2)).id, list.id);
+    for (std::int64_t& id : list.id)
+        id = 3 * id + 5;
+    const Particles particles = make_particles(sample_grid(), list, 2);
+    EXPECT_EQ(list_particles(particles).id, list.id);
+    EXPECT_EQ(particles.id_of(2), 11);
+}
+
 TEST(LaneLayout, padding_has_neither_mass_nor_volume) {
     const Grid& grid = sample_grid();
     ParticleList list = sample_points();

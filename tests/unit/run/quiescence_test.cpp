@@ -315,7 +315,7 @@ TEST(Quiescence, particles_that_are_added_wake_what_they_touch) {
                 added.volume.push_back(all.volume[q]);
                 added.specific_energy.push_back(all.specific_energy[q]);
                 added.material.push_back(0);
-                added.id.push_back(s.particles.id.back() + added.size());
+                added.id.push_back(s.particles.id_of(s.particles.count() - 1) + added.size());
             }
         return added;
     };

@@ -31,6 +31,7 @@ struct SetupFigures {
     double filling_seconds = 0.0;   ///< particles set into the bodies
     double preparing_seconds = 0.0; ///< layout, node masses, free surface, light map, first P2G
     double surface_seconds = 0.0;   ///< of it: signed distance and surface weights
+    double elements_seconds = 0.0;  ///< of it: what the surface's heat needs beside these, element by element
     std::int64_t nodes_in_band = 0; ///< that the signed distance is worked out for
     double peak_bytes = 0.0;        ///< beyond what the program held before
     double bytes_a_particle = 0.0;  ///< held from step to step

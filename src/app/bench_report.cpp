@@ -53,6 +53,7 @@ Json scene_json(const SceneFigures& figures) {
               {"filling_seconds", setup.filling_seconds},
               {"preparing_seconds", setup.preparing_seconds},
               {"surface_seconds", setup.surface_seconds},
+              {"elements_seconds", setup.elements_seconds},
               {"nodes_in_band", setup.nodes_in_band},
               {"node_updates_per_s", setup.node_updates_per_s()}}},
             {"memory",
@@ -97,6 +98,7 @@ void add_scene(std::string& text, const SceneFigures& f) {
     add_line(text, "of it level set, weights",
              fmt::format("{:.3f} s for {} nodes in the band: {:.1f} M nodes/s", setup.surface_seconds,
                          setup.nodes_in_band, 1e-6 * setup.node_updates_per_s()));
+    add_line(text, "of it surface elements", fmt::format("{:.3f} s", setup.elements_seconds));
     text += "  memory\n";
     add_line(text, "held",
              fmt::format("{:.0f} bytes a particle and {:.0f} bytes a node", setup.bytes_a_particle,

@@ -36,3 +36,11 @@ endif()
 if(NOT MELTSCOPE_SIMD_WIDTH STREQUAL "native")
   target_compile_definitions(meltscope_compilation INTERFACE MELTSCOPE_SIMD_WIDTH=${MELTSCOPE_SIMD_WIDTH})
 endif()
+
+# For programs that draw: keeps their driver loaded, so that what it holds is not taken for leaks.
+function(meltscope_keep_libraries target)
+  if(MELTSCOPE_SANITIZE MATCHES "address")
+    target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/sanitizers/keep_libraries.cpp)
+    set_target_properties(${target} PROPERTIES ENABLE_EXPORTS ON)
+  endif()
+endfunction()

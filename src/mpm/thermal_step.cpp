@@ -63,7 +63,8 @@ void lumping_error(const Grid& grid, const std::vector<EquationOfState>& materia
                     const Lanes room = max(load(&nodes.energy[a][i]) - options.least_energy[a], Lanes(0.0));
                     sharper = min(max(sharper, -room), room);
                 }
-                result = select(present && solid_or_liquid, sharper, result);
+                // A sum of one: nodes of several materials follow below.
+                result += select(present && solid_or_liquid, sharper, Lanes(0.0));
             }
         }
         store(result, &q[i]);

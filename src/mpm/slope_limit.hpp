@@ -5,14 +5,16 @@
 #include "meltscope/mpm/stencil.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace meltscope {
 
-/// Cells along the axes within which a slope must not lead below the least energy. The B-spline coefficients
+/// Cells down a slope within which it must not lead below the least energy. The B-spline coefficients
 /// of a field that falls off as exp(-k x/dx) are positive for k < 2.06, so from half a cell on only what the
 /// grid cannot resolve is touched; a little more leaves less undershoot where a laser comes on. One and a
-/// half, which would be safe for each particle alone, costs accuracy at sudden steps.
+/// half, which would be safe for each particle alone, costs accuracy at sudden steps; so would the same reach
+/// along each axis at once, in a beam's tails, which fall off steeply in all directions.
 inline constexpr double slope_reach = 0.6;
 
 /// The least energy in J/kg for the lanes of a group; minus infinity for bins within one and a half cells of
@@ -43,12 +45,14 @@ inline Lanes least_energy_of_group(const Grid& grid, const Boundary& boundary, c
 template <int n>
 void shorten_slopes(const Lanes& least, const double* energy, Gathered<n>& slope) {
     for (int p = 0; p < n * n * n; ++p) {
-        const Lanes drop = slope_reach * (abs(slope.x[p]) + abs(slope.y[p]) + abs(slope.z[p]));
+        const Lanes squared = slope_reach * slope_reach *
+                              (slope.x[p] * slope.x[p] + slope.y[p] * slope.y[p] + slope.z[p] * slope.z[p]);
         const Lanes room = max(load(energy + p * lane_count) - least, Lanes(0.0));
-        const auto too_steep = drop > room;
+        const auto too_steep = squared > room * room;
         if (none_of(too_steep))
             continue;
-        const Lanes share = select(too_steep, room / select(too_steep, drop, Lanes(1.0)), Lanes(1.0));
+        const Lanes share(
+            [&](int lane) { return too_steep[lane] ? room[lane] / std::sqrt(squared[lane]) : 1.0; });
         slope.x[p] *= share;
         slope.y[p] *= share;
         slope.z[p] *= share;

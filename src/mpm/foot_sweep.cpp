@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 namespace meltscope {
 namespace {
@@ -83,17 +84,16 @@ class Sweep {
     /// Every node looks at the feet of its 26 neighbours: what a row hands on along an axis can stop short of
     /// a node whose own foot lies askew. Only indices change, so that each is offered what was there before.
     void all_around() {
-        const std::vector<std::int32_t> before = nearest_;
+        const auto before = std::make_unique_for_overwrite<std::int32_t[]>(grid_.size);
+#pragma omp parallel for schedule(static)
+        for (std::int64_t k = -1; k <= grid_.cells[2] + 1; ++k)
+            if (band_.reaches_plane(k - 1) || band_.reaches_plane(k) || band_.reaches_plane(k + 1))
+                std::copy_n(&nearest_[grid_.index(-1, -1, k)], grid_.stride_z,
+                            &before[grid_.index(-1, -1, k)]);
 #pragma omp parallel for schedule(dynamic, 1)
         for (std::int64_t k = 0; k <= grid_.cells[2]; ++k)
-            for (std::int64_t j = 0; j <= grid_.cells[1]; ++j) {
-                const Stretch& row = band_.of_row(j, k);
-                for (std::int64_t c = -1; c <= 1; ++c)
-                    for (std::int64_t b = -1; b <= 1; ++b)
-                        for (std::int64_t a = -1; a <= 1; ++a)
-                            offer<false>(before.data(), row, j, k,
-                                         a + b * grid_.stride_y + c * grid_.stride_z);
-            }
+            for (std::int64_t j = 0; j <= grid_.cells[1]; ++j)
+                look_around(before.get(), j, k, std::make_integer_sequence<int, 27>());
     }
 
   private:
@@ -123,25 +123,19 @@ class Sweep {
         }
     }
 
+    /// The band's nodes of row (j,k) take the foot of the node `from` further in storage, in another row, if
+    /// it is nearer than their own.
     void offer_to_row(std::int64_t j, std::int64_t k, std::int64_t from) {
-        offer<true>(nearest_.data(), band_.of_row(j, k), j, k, from);
-    }
-
-    /// The band's nodes of row (j,k) take the foot of the node `from` further in storage if it is nearer than
-    /// their own. None of them may be offered what another of them takes.
-    template <bool with_places>
-    void offer(const std::int32_t* offered, const Stretch& stretch, std::int64_t j, std::int64_t k,
-               std::int64_t from) {
+        const Stretch& stretch = band_.of_row(j, k);
         const Vec3 row = grid_.position(0, j, k);
         const double dx = grid_.dx;
         const std::int64_t start = grid_.index(0, j, k);
         double *x = x_.get() + start, *y = y_.get() + start, *z = z_.get() + start;
         double* least = squared_.get() + start;
         std::int32_t* nearest = nearest_.data() + start;
-        offered += start;
 #pragma omp simd
         for (std::int64_t i = stretch.first; i <= stretch.last; ++i) {
-            const std::int32_t foot = offered[i + from];
+            const std::int32_t foot = nearest[i + from];
             const double foot_x = x[i + from], foot_y = y[i + from], foot_z = z[i + from];
             const double away_x = row[0] + dx * double(i) - foot_x, away_y = row[1] - foot_y,
                          away_z = row[2] - foot_z;
@@ -149,11 +143,39 @@ class Sweep {
             const bool nearer = (foot >= 0) & (squared < least[i]);
             least[i] = nearer ? squared : least[i];
             nearest[i] = nearer ? foot : nearest[i];
-            if constexpr (with_places) {
-                x[i] = nearer ? foot_x : x[i];
-                y[i] = nearer ? foot_y : y[i];
-                z[i] = nearer ? foot_z : z[i];
-            }
+            x[i] = nearer ? foot_x : x[i];
+            y[i] = nearer ? foot_y : y[i];
+            z[i] = nearer ? foot_z : z[i];
+        }
+    }
+
+    /// The band's nodes of row (j,k) take the nearest of the feet that they and their neighbours had
+    /// `before`, neighbours told apart by n = 0 .. 26.
+    template <int... n>
+    void look_around(const std::int32_t* before, std::int64_t j, std::int64_t k,
+                     std::integer_sequence<int, n...>) {
+        const Stretch& stretch = band_.of_row(j, k);
+        const Vec3 row = grid_.position(0, j, k);
+        const double dx = grid_.dx;
+        const std::int64_t start = grid_.index(0, j, k), stride_y = grid_.stride_y, stride_z = grid_.stride_z;
+        const double *x = x_.get() + start, *y = y_.get() + start, *z = z_.get() + start;
+        const double* squared = squared_.get() + start;
+        std::int32_t* nearest = nearest_.data() + start;
+        before += start;
+#pragma omp simd
+        for (std::int64_t i = stretch.first; i <= stretch.last; ++i) {
+            double least = squared[i];
+            std::int32_t best = nearest[i];
+            const auto offer = [&](std::int64_t from) {
+                const double away_x = row[0] + dx * double(i) - x[from], away_y = row[1] - y[from],
+                             away_z = row[2] - z[from];
+                const double distance = away_x * away_x + away_y * away_y + away_z * away_z;
+                const bool nearer = (before[from] >= 0) & (distance < least);
+                least = nearer ? distance : least;
+                best = nearer ? before[from] : best;
+            };
+            (offer(i + (n % 3 - 1) + (n / 3 % 3 - 1) * stride_y + (n / 9 - 1) * stride_z), ...);
+            nearest[i] = best;
         }
     }
 

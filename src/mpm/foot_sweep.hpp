@@ -3,6 +3,7 @@
 #include "meltscope/aligned.hpp"
 #include "meltscope/mpm/grid.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace meltscope {
@@ -22,6 +23,14 @@ struct NodeBand {
     std::vector<Stretch> stretch; ///< of row (j,k): stretch[j + k rows_y]
 
     const Stretch& of_row(std::int64_t j, std::int64_t k) const { return stretch[j + k * rows_y]; }
+
+    /// Whether any node (i,j,k) belongs to it.
+    bool reaches_plane(std::int64_t k) const {
+        if (k < 0 || (k + 1) * rows_y > std::int64_t(stretch.size()))
+            return false;
+        return std::any_of(&stretch[k * rows_y], &stretch[k * rows_y] + rows_y,
+                           [](const Stretch& row) { return row.first <= row.last; });
+    }
 
     /// Calls work(i, j, k, storage index) for every node of the band, threads sharing the planes along z.
     template <class Work>

@@ -18,6 +18,12 @@ SurfaceAreas find_surface_groups(const Grid& grid, const Particles& particles, c
     TileFlags sides(grid);
     sides.set(grid, [&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
         unsigned char flags = 0;
+        if (end - i == lane_count) {
+            const Lanes value = load(&phi_hat[grid.index(i, j, k)]);
+            flags |= any_of(value <= surface_gate) ? inward : 0;
+            flags |= any_of(value >= -surface_gate) ? outward : 0;
+            return flags;
+        }
         for (std::int64_t at = grid.index(i, j, k); at < grid.index(end, j, k); ++at) {
             flags |= phi_hat[at] <= surface_gate ? inward : 0;
             flags |= phi_hat[at] >= -surface_gate ? outward : 0;
@@ -219,14 +225,14 @@ double node_area(const Grid& grid, const Field& phi, std::int64_t i, std::int64_
 
 /// Turns sum_q N_iq s_q into A_i / sum_q N_iq s_q.
 void divide_areas_by(const Grid& grid, const Field& phi, Field& total) {
-#pragma omp parallel for schedule(static)
-    for (std::int64_t k = 0; k <= grid.cells[2]; ++k)
-        for (std::int64_t j = 0; j <= grid.cells[1]; ++j)
-            for (std::int64_t i = 0; i <= grid.cells[0]; ++i) {
-                double& value = total[grid.index(i, j, k)];
-                if (value > 0.0)
-                    value = node_area(grid, phi, i, j, k) / value;
-            }
+    for_each_tile(grid, [&](std::int64_t first, std::int64_t end, std::int64_t j, std::int64_t k) {
+        double* row = &total[grid.index(0, j, k)];
+        if (all_of(load(row + first) == 0.0))
+            return;
+        for (std::int64_t i = first; i < end; ++i)
+            if (row[i] > 0.0)
+                row[i] = node_area(grid, phi, i, j, k) / row[i];
+    });
     mirror_ghosts(grid, Boundary{}, total);
 }
 

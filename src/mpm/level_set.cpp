@@ -28,18 +28,11 @@ constexpr double smoothed_away = 0.25;
 /// Where the volume fraction differs from one by no more than round-off, no surface is near.
 constexpr double round_off = 1e-13;
 
+/// The distance that the smoothed fraction tells where it is zero, in cells; minus this where it is one.
+constexpr double beyond_smoothing = 1.5;
+
 /// What a tile has among its bins: some that hold material, some that miss some.
 constexpr unsigned char holds = 1, lacks = 2, both = holds | lacks;
-
-/// Walks over the nodes of the box.
-template <class Work>
-void for_each_node(const Grid& grid, Work work) {
-#pragma omp parallel for schedule(static)
-    for (std::int64_t k = 0; k <= grid.cells[2]; ++k)
-        for (std::int64_t j = 0; j <= grid.cells[1]; ++j)
-            for (std::int64_t i = 0; i <= grid.cells[0]; ++i)
-                work(i, j, k, grid.index(i, j, k));
-}
 
 Vec3 central_difference(const Grid& grid, const Field& f, std::int64_t at) {
     return Vec3(f[at + 1] - f[at - 1], f[at + grid.stride_y] - f[at - grid.stride_y],
@@ -47,52 +40,15 @@ Vec3 central_difference(const Grid& grid, const Field& f, std::int64_t at) {
            (2.0 * grid.dx);
 }
 
-/// Along each axis, of each lattice point of a bin and each node: 1 where the point lies in the box, else 0.
-std::array<std::vector<Field>, 3> lattice_points_in_box(const Grid& grid,
-                                                        const std::vector<double>& offsets) {
-    std::array<std::vector<Field>, 3> in_box;
-    for (int axis = 0; axis < 3; ++axis)
-        for (const double offset : offsets) {
-            Field& of_node = in_box[axis].emplace_back(grid.cells[axis] + 1 + lane_count, 0.0);
-            for (std::int64_t n = 0; n <= grid.cells[axis]; ++n)
-                of_node[n] = double(n) + offset > 0.0 && double(n) + offset < double(grid.cells[axis]);
-        }
-    return in_box;
-}
-
-/// Whether all lattice points that the box has in a group's bins are there, each with its share of a cell.
-bool is_full(const Grid& grid, const Particles& particles, const std::array<std::vector<Field>, 3>& in_box,
-             const LaneGroup& group) {
-    if (!group.on_lattice)
-        return false;
-    const std::int64_t i = group.corner % grid.stride_y, j = group.corner % grid.stride_z / grid.stride_y,
-                       k = group.corner / grid.stride_z;
-    const double share = grid.dx * grid.dx * grid.dx / double(group.slots);
-    const double* volume = &particles.volume[group.first_slot * lane_count];
-    for (const Field& z : in_box[2])
-        for (const Field& y : in_box[1])
-            for (const Field& x : in_box[0]) {
-                const Lanes expected = share * y[j] * z[k] * load(&x[i]);
-                if (any_of(abs(load(volume) - expected) > round_off * share))
-                    return false;
-                volume += lane_count;
-            }
-    return true;
-}
-
 /// What the bins around each tile have. A place with groups of two materials counts as not full.
 TileFlags find_fill(const Grid& grid, const Particles& particles) {
     TileFlags fill(grid);
-    for (std::int64_t tile = 0; tile < fill.count(); ++tile)
-        fill[tile] = lacks;
-    const auto& groups = particles.layout.groups;
-    const auto in_box = lattice_points_in_box(grid, particles.lattice_offset);
-    std::vector<char> full(groups.size());
+    fill.set(grid, [](std::int64_t, std::int64_t, std::int64_t, std::int64_t) { return lacks; });
+    const LaneLayout& layout = particles.layout;
 #pragma omp parallel for schedule(static)
-    for (std::size_t g = 0; g < groups.size(); ++g)
-        full[g] = is_full(grid, particles, in_box, groups[g]);
-    for (std::size_t g = 0; g < groups.size(); ++g)
-        fill[fill.tile_of(groups[g])] = full[g] ? holds : both;
+    for (std::size_t b = 0; b < layout.blocks.size(); ++b) // blocks have no tile in common
+        for (std::int64_t g = layout.blocks[b].first_group; g < layout.blocks[b].last_group; ++g)
+            fill[fill.tile_of(layout.groups[g])] = particles.full[g] ? holds : both;
     fill.widen();
     return fill;
 }
@@ -117,11 +73,17 @@ Field smoothed_distance(const Grid& grid, const Particles& particles) {
     });
     fold_ghosts(grid, Boundary{}, AtFixedFaces::leave, fraction);
     const double cell = grid.dx * grid.dx * grid.dx;
-    for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
-        const unsigned char around = fill[fill.tile_of(i, j, k)];
-        const double filled =
-            around == both ? fraction[at] / (cell * grid.share_in_box(i, j, k)) : double(around == holds);
-        fraction[at] = filled >= 1.0 - round_off ? -1.5 : distance_of_fraction(filled);
+    for_each_tile(grid, [&](std::int64_t first, std::int64_t end, std::int64_t j, std::int64_t k) {
+        double* row = &fraction[grid.index(0, j, k)];
+        const unsigned char around = fill[fill.tile_of(first, j, k)];
+        if (around != both) {
+            std::fill(row + first, row + end, around == holds ? -beyond_smoothing : beyond_smoothing);
+            return;
+        }
+        for (std::int64_t i = first; i < end; ++i) {
+            const double filled = row[i] / (cell * grid.share_in_box(i, j, k));
+            row[i] = filled >= 1.0 - round_off ? -beyond_smoothing : distance_of_fraction(filled);
+        }
     });
     mirror_ghosts(grid, Boundary{}, fraction);
     return fraction;
@@ -131,31 +93,36 @@ Field smoothed_distance(const Grid& grid, const Particles& particles) {
 std::vector<Foot> find_feet(const Grid& grid, const Field& distance, std::vector<std::int32_t>& nearest) {
     std::vector<std::vector<Foot>> feet_of_layer(grid.cells[2] + 1);
     nearest.assign(grid.size, -1);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (std::int64_t k = 0; k <= grid.cells[2]; ++k)
-        for (std::int64_t j = 0; j <= grid.cells[1]; ++j)
-            for (std::int64_t i = 0; i <= grid.cells[0]; ++i) {
-                const std::int64_t at = grid.index(i, j, k);
-                if (std::abs(distance[at]) >= seed_band)
-                    continue;
-                const Vec3 gradient = central_difference(grid, distance, at);
-                if (gradient.norm() * grid.dx < 0.1)
-                    continue; // a gap or a sheet thinner than the grid can see
-                const Vec3 normal = gradient.normalized();
-                const Vec3 foot = grid.position(i, j, k) - distance[at] * grid.dx * normal;
-                if (std::abs(trilinear(grid, distance, foot)) > foot_tolerance)
-                    continue;
-                nearest[at] = std::int32_t(feet_of_layer[k].size());
-                feet_of_layer[k].push_back({foot, normal});
-            }
+    for_each_tile(grid, [&](std::int64_t first, std::int64_t end, std::int64_t j, std::int64_t k) {
+        if (none_of(abs(load(&distance[grid.index(first, j, k)])) < seed_band))
+            return;
+        for (std::int64_t i = first; i < end; ++i) {
+            const std::int64_t at = grid.index(i, j, k);
+            if (std::abs(distance[at]) >= seed_band)
+                continue;
+            const Vec3 gradient = central_difference(grid, distance, at);
+            if (gradient.norm() * grid.dx < 0.1)
+                continue; // a gap or a sheet thinner than the grid can see
+            const Vec3 normal = gradient.normalized();
+            const Vec3 foot = grid.position(i, j, k) - distance[at] * grid.dx * normal;
+            if (std::abs(trilinear(grid, distance, foot)) > foot_tolerance)
+                continue;
+            nearest[at] = std::int32_t(feet_of_layer[k].size());
+            feet_of_layer[k].push_back({foot, normal});
+        }
+    });
     std::vector<Foot> feet;
+    std::vector<std::int32_t> before(grid.cells[2] + 1);
     for (std::int64_t k = 0; k <= grid.cells[2]; ++k) {
-        const std::int32_t before = std::int32_t(feet.size());
+        before[k] = std::int32_t(feet.size());
         feet.insert(feet.end(), feet_of_layer[k].begin(), feet_of_layer[k].end());
-        for (std::int64_t at = grid.index(0, 0, k); at <= grid.index(grid.cells[0], grid.cells[1], k); ++at)
-            if (nearest[at] >= 0)
-                nearest[at] += before;
     }
+#pragma omp parallel for schedule(static)
+    for (std::int64_t k = 0; k <= grid.cells[2]; ++k)
+        if (before[k] > 0 && !feet_of_layer[k].empty())
+            for (std::int64_t at = grid.index(0, 0, k); at <= grid.index(grid.cells[0], grid.cells[1], k);
+                 ++at)
+                nearest[at] += nearest[at] >= 0 ? before[k] : 0;
     return feet;
 }
 
@@ -211,8 +178,10 @@ std::vector<LoneParticle> lone_particles(const Grid& grid, const Particles& part
     const double outside = smoothed_away * grid.dx;
     TileFlags some_outside(grid);
     some_outside.set(grid, [&](std::int64_t i, std::int64_t end, std::int64_t j, std::int64_t k) {
-        const double* first = &phi[grid.index(0, j, k)];
-        return std::any_of(first + i, first + end, [&](double distance) { return distance > outside; });
+        if (end - i == lane_count)
+            return any_of(load(&phi[grid.index(i, j, k)]) > outside);
+        const double* row = &phi[grid.index(0, j, k)];
+        return std::any_of(row + i, row + end, [&](double distance) { return distance > outside; });
     });
     some_outside.widen();
 
@@ -271,7 +240,7 @@ double distance_of_fraction(double fraction) {
     if (fraction > 0.5)
         return -distance_of_fraction(1.0 - fraction);
     if (fraction <= 0.0)
-        return 1.5;
+        return beyond_smoothing;
     if (fraction <= 1.0 / 6.0) // C(u) = (3/2 + u)^3 / 6 for u <= -1/2
         return 1.5 - std::cbrt(6.0 * fraction);
     double x = (0.5 - fraction) / 0.75; // 1 - C(x) = 1/2 - 3/4 x + x^3/3 for |x| <= 1/2
@@ -288,8 +257,9 @@ Field signed_distance(const Grid& grid, const Particles& particles, const LevelS
     const NodeBand band = sweep_feet(grid, feet, far + 0.5 * grid.dx, nearest);
 
     Field phi(grid.size, 0.0);
-    for_each_node(grid, [&](std::int64_t, std::int64_t, std::int64_t, std::int64_t at) {
-        phi[at] = smoothed[at] < 0.0 ? -far : far;
+    for_each_tile(grid, [&](std::int64_t first, std::int64_t end, std::int64_t j, std::int64_t k) {
+        for (std::int64_t at = grid.index(first, j, k); at < grid.index(end, j, k); ++at)
+            phi[at] = smoothed[at] < 0.0 ? -far : far;
     });
     band.for_each_node(grid, [&](std::int64_t i, std::int64_t j, std::int64_t k, std::int64_t at) {
         if (nearest[at] >= 0)
@@ -310,8 +280,17 @@ Field regularized(const Grid& grid, const Field& phi, const LevelSetOptions& opt
     const double far = level_set_band * grid.dx, inside = profile(-far), outside = profile(far);
     Field phi_hat(grid.size, 0.0);
 #pragma omp parallel for schedule(static)
-    for (std::int64_t at = 0; at < grid.size; ++at)
-        phi_hat[at] = phi[at] == -far ? inside : phi[at] == far ? outside : profile(phi[at]);
+    for (std::int64_t first = 0; first < grid.size; first += lane_count) { // rows are whole cache lines
+        const Lanes distance = load(&phi[first]);
+        if (all_of(distance == -far)) {
+            store(Lanes(inside), &phi_hat[first]);
+        } else if (all_of(distance == far)) {
+            store(Lanes(outside), &phi_hat[first]);
+        } else {
+            for (std::int64_t at = first; at < first + lane_count; ++at)
+                phi_hat[at] = phi[at] == -far ? inside : phi[at] == far ? outside : profile(phi[at]);
+        }
+    }
     return phi_hat;
 }
 

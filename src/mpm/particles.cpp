@@ -1,8 +1,59 @@
 #include "meltscope/mpm/particles.hpp"
 
+#include <cmath>
 #include <numeric>
 
 namespace meltscope {
+namespace {
+
+/// Where a particle's volume differs from a lattice point's share of a cell by no more than this part of it,
+/// the difference is round-off.
+constexpr double round_off = 1e-13;
+
+/// Along each axis, of each lattice point of a bin and each node: 1 where the point lies in the box, else 0.
+std::array<std::vector<Field>, 3> lattice_points_in_box(const Grid& grid,
+                                                        const std::vector<double>& offsets) {
+    std::array<std::vector<Field>, 3> in_box;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double offset : offsets) {
+            Field& of_node = in_box[axis].emplace_back(grid.cells[axis] + 1 + lane_count, 0.0);
+            for (std::int64_t n = 0; n <= grid.cells[axis]; ++n)
+                of_node[n] = double(n) + offset > 0.0 && double(n) + offset < double(grid.cells[axis]);
+        }
+    return in_box;
+}
+
+/// Whether all lattice points that the box has in a group's bins are there, each with its share of a cell.
+bool is_full(const Grid& grid, const Particles& particles, const std::array<std::vector<Field>, 3>& in_box,
+             const LaneGroup& group) {
+    if (!group.on_lattice)
+        return false;
+    const std::int64_t i = group.corner % grid.stride_y, j = group.corner % grid.stride_z / grid.stride_y,
+                       k = group.corner / grid.stride_z;
+    const double share = grid.dx * grid.dx * grid.dx / double(group.slots);
+    const double* volume = &particles.volume[group.first_slot * lane_count];
+    for (const Field& z : in_box[2])
+        for (const Field& y : in_box[1])
+            for (const Field& x : in_box[0]) {
+                const Lanes expected = share * y[j] * z[k] * load(&x[i]);
+                if (any_of(abs(load(volume) - expected) > round_off * share))
+                    return false;
+                volume += lane_count;
+            }
+    return true;
+}
+
+std::vector<char> find_full_groups(const Grid& grid, const Particles& particles) {
+    const auto& groups = particles.layout.groups;
+    const auto in_box = lattice_points_in_box(grid, particles.lattice_offset);
+    std::vector<char> full(groups.size());
+#pragma omp parallel for schedule(static)
+    for (std::size_t g = 0; g < groups.size(); ++g)
+        full[g] = is_full(grid, particles, in_box, groups[g]);
+    return full;
+}
+
+} // namespace
 
 Particles make_particles(const Grid& grid, ParticleList list, int lattice) {
     Particles particles;
@@ -34,6 +85,7 @@ Particles make_particles(const Grid& grid, ParticleList list, int lattice) {
         particles.offset_y[loose * lane_count + at % lane_count] = place.offset[1];
         particles.offset_z[loose * lane_count + at % lane_count] = place.offset[2];
     }
+    particles.full = find_full_groups(grid, particles);
     if (!list.powder.empty()) {
         particles.powder.assign(size, 0.0);
         for (std::int64_t q = 0; q < list.size(); ++q)

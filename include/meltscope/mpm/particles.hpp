@@ -39,6 +39,9 @@ struct Particles {
     Field mass;            ///< m_p, kg
     Field volume;          ///< v_p, m^3
     Field specific_energy; ///< e_p, J/kg
+    /// Of each group: all points that the lattice has in its bins, and in the box, are there, each with its
+    /// share of a cell. No free surface passes between such groups.
+    std::vector<char> full;
     /// 1: homogenised powder that has not melted yet, 0: bulk; empty: there never was powder. Such a particle
     /// stands for its whole volume; its mass is that of the powder in it.
     Field powder;

@@ -17,10 +17,11 @@ double forget_peak_memory();
 /// by page each time, which took half of it. Elsewhere than with glibc nothing happens.
 void keep_freed_memory();
 
-/// Starts the program once more with sleeping waits set for OpenMP, unless the user has set how threads wait.
-/// Those that spin at a barrier take the cores from the picture thread and from other programs, which then
-/// keep the step waiting: on a busy machine a run was six times slower. The OpenMP library reads its settings
-/// only when it is loaded.
+/// Starts the program once more with OpenMP's threads set to sleep at barriers after some 100 us, unless the
+/// user has set how they wait. A step has some thirty of them, and to wake a thread takes 50 us; threads that
+/// spin for long take the cores from the picture thread and from other programs, which then keep the step
+/// waiting: on a busy machine a run was six times slower. The OpenMP library reads its settings only when it
+/// is loaded.
 void let_threads_sleep(char** arguments);
 
 } // namespace meltscope

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that meltscope needs to be built, run and tested. Says which; does nothing if all are there.
-# With --clang also Clang, for the sanitizers and the fuzzers.
+# With --clang also Clang, for the sanitizers and the fuzzers; with --checks what tidy.sh, memcheck.sh and coverage.sh need.
 set -euo pipefail
 
 packages=(
@@ -14,12 +14,16 @@ packages=(
   libgtest-dev libbenchmark-dev python3-vtk9 python3-meshio python3-h5py python3-numpy python3-matplotlib
   python3-pyte
 )
-if [[ ${1-} == --clang ]]; then
-  packages+=(clang libclang-rt-dev libomp-dev llvm)
-elif (($# > 0)); then
-  echo "setup: the only option is --clang, not $1" >&2
-  exit 2
-fi
+for option in "$@"; do
+  case $option in
+    --clang) packages+=(clang libclang-rt-dev libomp-dev llvm) ;;
+    --checks) packages+=(clang clang-tidy libomp-dev valgrind gcovr) ;;
+    *)
+      echo "setup: the options are --clang and --checks, not $option" >&2
+      exit 2
+      ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do

@@ -3,6 +3,7 @@
 # Reads how they are compiled from build/asan (or BUILD), where each room is one file and headers are read once.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+./scripts/setup.sh --checks
 build=${BUILD:-build/asan}
 [[ -f $build/compile_commands.json ]] || cmake --preset asan >/dev/null
 rooms=("$@")

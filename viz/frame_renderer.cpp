@@ -148,18 +148,18 @@ struct FrameRenderer::Impl {
         if (display->lost()) {
             // Nothing that lives on a dead X connection can be taken down safely; it ends with the process.
             window->Register(nullptr);
-            new std::map<std::string, View>(std::move(views));
+            static_cast<void>(views.release());
         }
     }
 
     std::set<std::string> drawn; ///< views that have been drawn before
 
     View& view(const std::string& name) {
-        const auto found = views.find(name);
-        if (found != views.end()) {
+        const auto found = views->find(name);
+        if (found != views->end()) {
             return found->second;
         }
-        View& made = views.emplace(name, make_view(name)).first->second;
+        View& made = views->emplace(name, make_view(name)).first->second;
         for (const auto& panel : made) {
             window->AddRenderer(panel->renderer());
         }
@@ -170,7 +170,7 @@ struct FrameRenderer::Impl {
     vtkSmartPointer<vtkRenderWindow> window;
     vtkNew<vtkRenderer> background;
     Canvas canvas;
-    std::map<std::string, View> views;
+    std::unique_ptr<std::map<std::string, View>> views = std::make_unique<std::map<std::string, View>>();
     std::map<std::string, std::array<double, 2>> ranges; // by field, chosen once
     std::string renderer_name;
 };
@@ -232,7 +232,7 @@ vtkSmartPointer<vtkImageData> FrameRenderer::render(const Instant& instant,
     picture.walls = colored(instant.geometry->walls);
 
     View& shown = impl.view(view_name);
-    for (auto& [name, view] : impl.views) {
+    for (auto& [name, view] : *impl.views) {
         for (const auto& panel : view) {
             panel->renderer()->SetDraw(&view == &shown);
         }

@@ -66,6 +66,10 @@ class Pipeline::Worker {
         const std::lock_guard lock(mutex_);
         return stats_;
     }
+    double seconds_to_finish() const {
+        const std::lock_guard lock(mutex_);
+        return longest_job_ * double(queue_.size());
+    }
     RenderOptions options() const {
         const std::lock_guard lock(mutex_);
         return options_;
@@ -115,6 +119,7 @@ class Pipeline::Worker {
     bool finishing_ = false;
     RenderOptions options_;
     PipelineStats stats_;
+    double longest_job_ = 0.0; ///< s
     std::vector<HistoryPoint> history_;
     int next_frame_ = 0;
 
@@ -276,7 +281,9 @@ void Pipeline::Worker::work() {
         process(job);
         Job finished;
         lock.lock();
-        stats_.busy_seconds += seconds_since(start);
+        const double seconds = seconds_since(start);
+        stats_.busy_seconds += seconds;
+        longest_job_ = std::max(longest_job_, seconds);
         finished = std::move(queue_.front());
         queue_.pop_front();
         changed_.notify_all();
@@ -467,6 +474,10 @@ RenderOptions Pipeline::render_options() const {
 
 void Pipeline::wait_for_earlier_than(double time) {
     worker_->wait_for_earlier_than(time);
+}
+
+double Pipeline::seconds_to_finish() const {
+    return worker_->seconds_to_finish();
 }
 
 void Pipeline::finish() {

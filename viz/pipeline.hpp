@@ -83,6 +83,9 @@ class Pipeline {
     /// at that time does not make again.
     void wait_for_earlier_than(double time);
 
+    /// About how long finish() would take, s: what is queued, each as long as the longest so far.
+    double seconds_to_finish() const;
+
     /// Waits until everything queued is written and ends the thread and its display. Later submits do
     /// nothing.
     void finish();

@@ -21,7 +21,7 @@ class Child {
     static constexpr const char* pipe_word = "%PIPE%";
 
     /// Starts arguments[0] (a full path). Throws VizError if the system has no process or pipe to give.
-    Child(std::vector<std::string> arguments, const std::filesystem::path& working_dir = {});
+    explicit Child(std::vector<std::string> arguments, const std::filesystem::path& working_dir = {});
     /// Ends the child and reaps it.
     ~Child();
     Child(const Child&) = delete;

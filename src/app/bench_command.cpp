@@ -2,12 +2,12 @@
 #include "bench_scenes.hpp"
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "text.hpp"
 
 #include "meltscope/scenario/scenario_file.hpp"
 
 #include <omp.h>
 
-#include <cstdio>
 #include <memory>
 
 namespace meltscope {
@@ -31,8 +31,8 @@ int execute(BenchRequest request) {
         request.overrides.push_back("physics.transfer=" + request.transfer);
     const bool both = request.transfer == "both" && !request.in_situ;
     std::vector<SceneFigures> scenes;
-    const auto measure = [&](const std::string& name, Scenario scenario) {
-        scenes.push_back(measure_scene(name, std::move(scenario), both, request.in_situ && scenes.empty()));
+    const auto measure = [&](const std::string& name, const Scenario& scenario) {
+        scenes.push_back(measure_scene(name, scenario, both, request.in_situ && scenes.empty()));
     };
     if (request.scene == "block" || request.scene == "all")
         measure("block", bench_block(request.particles, request.overrides));
@@ -40,7 +40,7 @@ int execute(BenchRequest request) {
         measure("powder", bench_powder(request.particles, request.overrides));
     if (scenes.empty())
         measure(request.scene, read_scenario(request.scene, request.overrides));
-    std::fputs((request.json ? bench_json(scenes) : bench_text(scenes)).c_str(), stdout);
+    print_result(request.json ? bench_json(scenes) : bench_text(scenes));
     return exit_code::done;
 }
 

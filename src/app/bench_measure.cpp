@@ -134,7 +134,8 @@ SpeedFigures figures_of(const Turns& turns, std::int64_t particles) {
 
 } // namespace
 
-SceneFigures measure_scene(const std::string& name, Scenario scenario, bool both_transfers, bool in_situ) {
+SceneFigures measure_scene(const std::string& name, const Scenario& scenario, bool both_transfers,
+                           bool in_situ) {
     require_memory_for(scenario);
     SceneFigures figures;
     figures.scene = name;

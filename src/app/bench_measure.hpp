@@ -57,6 +57,7 @@ struct SceneFigures {
 /// Sets the scene up and steps it, taking turns between the transfer forms and the numbers of threads: the
 /// scenario's form alone unless `both_transfers`, and all threads and one unless there is but one. Throws
 /// UsageError if the scenario needs more memory than there is.
-SceneFigures measure_scene(const std::string& name, Scenario scenario, bool both_transfers, bool in_situ);
+SceneFigures measure_scene(const std::string& name, const Scenario& scenario, bool both_transfers,
+                           bool in_situ);
 
 } // namespace meltscope

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -26,7 +25,7 @@ struct CheckRequest {
 };
 
 void print(const std::string& line) {
-    std::fputs((line + "\n").c_str(), stdout);
+    print_result(line + "\n");
 }
 
 /// The step size in s once something has melted and is twice as hot as its liquidus.

@@ -20,9 +20,14 @@ double instants(const Cadence& cadence, double span, double dt) {
 
 } // namespace
 
+double checkpoint_bytes(const Simulation& simulation) {
+    constexpr double bytes_a_particle = 61.0, bytes_a_node = 32.0;
+    return bytes_a_particle * double(simulation.particles.count()) +
+           bytes_a_node * double(simulation.grid.size);
+}
+
 DiskNeed disk_need(const PreparedRun& prepared, bool draws) {
     constexpr double bytes_a_pixel = 0.15; // of a PNG picture of a scene with powder; of smooth ones half
-    constexpr double bytes_a_particle = 61.0, bytes_a_node = 32.0; // of a checkpoint
     const Run& run = prepared.run;
     const Simulation& simulation = run.simulation;
     const double span =
@@ -40,9 +45,8 @@ DiskNeed disk_need(const PreparedRun& prepared, bool draws) {
         need.pictures = instants(run.schedule.picture.value_or(run.schedule.output), span, dt) *
                         double(render.views.size()) * bytes_a_pixel * render.size[0] * render.size[1];
     const double made = instants(run.schedule.checkpoint, span, dt);
-    need.checkpoints = std::min(made, double(prepared.scenario.checkpoint.keep) + 1.0) *
-                       (bytes_a_particle * double(simulation.particles.count()) +
-                        bytes_a_node * double(simulation.grid.size));
+    need.checkpoints =
+        std::min(made, double(prepared.scenario.checkpoint.keep) + 1.0) * checkpoint_bytes(simulation);
     return need;
 }
 

@@ -18,6 +18,9 @@ struct DiskNeed {
     double sum() const { return files + pictures + checkpoints; }
 };
 
+/// A checkpoint's size.
+double checkpoint_bytes(const Simulation& simulation);
+
 DiskNeed disk_need(const PreparedRun& prepared, bool draws);
 
 /// Bytes that are free where a folder is or will be; negative if the system does not say.

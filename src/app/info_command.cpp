@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -21,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void say(const std::string& line) {
-    std::fputs((line + "\n").c_str(), stdout);
+    print_result(line + "\n");
 }
 
 void print_figures(const char* title, const RunSummary::Figures& figures, const char* unit) {

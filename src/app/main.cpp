@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "machine.hpp"
+#include "text.hpp"
 
 #include "meltscope/beam/scan_path.hpp"
 #include "meltscope/build/stl.hpp"
@@ -12,7 +13,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <new>
 #include <stdexcept>
@@ -23,7 +23,7 @@ using namespace meltscope;
 namespace {
 
 int report(const std::string& message, int code) {
-    std::fputs(fmt::format("error: {}\n", message).c_str(), stderr);
+    show(stderr, fmt::format("error: {}\n", message));
     return code;
 }
 

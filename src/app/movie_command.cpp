@@ -1,13 +1,13 @@
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "run_outputs.hpp"
+#include "text.hpp"
 
 #include "viz/movie.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -36,7 +36,7 @@ int execute(const MovieRequest& request) {
     for (const std::string& view : request.views.empty() ? there : request.views) {
         const double rate = request.rate > 0.0 ? request.rate : movie_rate(count_pictures(paths, view));
         viz::encode_movie(paths.frames(), view, paths.movie(view), rate);
-        std::fputs(fmt::format("{}\n", paths.movie(view).string()).c_str(), stdout);
+        print_result(fmt::format("{}\n", paths.movie(view).string()));
     }
     return exit_code::done;
 }

@@ -3,6 +3,7 @@
 #include "run_outputs.hpp"
 #include "run_setup.hpp"
 #include "saved_run.hpp"
+#include "text.hpp"
 
 #include "viz/movie.hpp"
 #include "viz/pipeline.hpp"
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -186,14 +186,14 @@ int execute(const RenderRequest& request) {
     pipeline.finish();
     if (const viz::PipelineStats stats = pipeline.stats(); !stats.failure.empty())
         throw std::runtime_error(stats.failure);
-    std::fputs(fmt::format("{}\n", output.frames().string()).c_str(), stdout);
+    print_result(fmt::format("{}\n", output.frames().string()));
     for (const std::string& view : options.views) {
         try {
             viz::encode_movie(output.frames(), view, output.movie(view),
                               movie_rate(count_pictures(output, view)));
-            std::fputs(fmt::format("{}\n", output.movie(view).string()).c_str(), stdout);
+            print_result(fmt::format("{}\n", output.movie(view).string()));
         } catch (const viz::VizError& error) {
-            std::fputs(fmt::format("warning: no movie of {}: {}\n", view, error.what()).c_str(), stderr);
+            show(stderr, fmt::format("warning: no movie of {}: {}\n", view, error.what()));
         }
     }
     return exit_code::done;

@@ -1,12 +1,12 @@
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "run_report.hpp"
+#include "text.hpp"
 
 #include "meltscope/io/atomic_file.hpp"
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -20,11 +20,10 @@ int report_on(const std::filesystem::path& folder) {
         throw UsageError(
             fmt::format("{} holds no run (run.toml, run.json or melt_pool.csv): give the folder of a run",
                         folder.string()));
-    const std::string page = report_page(paths, [](const std::string& text) {
-        std::fputs(fmt::format("warning: {}\n", text).c_str(), stderr);
-    });
+    const std::string page =
+        report_page(paths, [](const std::string& text) { show(stderr, fmt::format("warning: {}\n", text)); });
     write_file_atomically(paths.report(), page);
-    std::fputs(fmt::format("{}\n", paths.report().string()).c_str(), stdout);
+    print_result(fmt::format("{}\n", paths.report().string()));
     return exit_code::done;
 }
 

@@ -7,7 +7,7 @@
 #include "run_setup.hpp"
 #include "signals.hpp"
 #include "step_watch.hpp"
-#include "stopwatch.hpp"
+#include "stops.hpp"
 #include "text.hpp"
 
 #include "meltscope/run/possible_state.hpp"
@@ -99,28 +99,6 @@ OutputFolder output_folder(const RunRequest& request) {
     std::error_code not_there;
     folder.goes_on = own && std::filesystem::equivalent(folder.path, *own, not_there);
     return folder;
-}
-
-/// Why the run is to stop, if a signal or the wall clock says so.
-std::optional<std::string> stop_request(const Stopwatch& since_start, double wall_limit) {
-    if (stop_signal() != 0)
-        return "asked to stop by a signal";
-    if (since_start.seconds() >= wall_limit)
-        return fmt::format("reached the wall limit of {}", clock_time(wall_limit));
-    return std::nullopt;
-}
-
-/// Signals and the wall clock, as a source of commands.
-CommandSource stops(const Stopwatch& since_start, double wall_limit, Terminal& terminal) {
-    const auto apply = [&since_start, wall_limit, &terminal](Run& run) {
-        if (const auto reason = stop_request(since_start, wall_limit))
-            run.stop_reason = *reason;
-        if (take_checkpoint_request()) {
-            terminal.note("asked for a checkpoint by a signal");
-            run.wanted.checkpoint = true;
-        }
-    };
-    return {apply};
 }
 
 void describe(const PreparedRun& prepared, const std::filesystem::path& folder, int threads,
@@ -219,11 +197,10 @@ RunOutcome step_through(Run& run, const RunConnections& connections, RunOutputs&
 }
 
 int execute(const RunRequest& request) {
-    const Stopwatch since_start;
+    Stops stops(wall_limit_of(request.wall_limit));
     if (request.scenario.empty() && request.restart.empty())
         throw UsageError("a SCENARIO is required, or a checkpoint to go on from (--restart)");
     const std::optional<double> until = time_of(request.until);
-    const double wall_limit = wall_limit_of(request.wall_limit);
     const viz::Backend backend = backend_of(request);
     if (request.threads > 0)
         omp_set_num_threads(request.threads);
@@ -267,11 +244,12 @@ int execute(const RunRequest& request) {
     RunOutputs outputs(claim.paths(), prepared, backend, threads, terminal);
     StepWatch watch(terminal, outputs);
     RunConsole console(request.steering, claim.paths(), prepared, outputs, terminal,
-                       [&] { return stop_request(since_start, wall_limit); });
+                       [&] { return stops.request(); });
     RunConnections connections;
     connections.commands.push_back(scheduled_layers(prepared.scenario.layers));
-    connections.commands.push_back(stops(since_start, wall_limit, terminal));
+    connections.commands.push_back(stops.source(outputs, terminal));
     connections.commands.push_back(console.source());
+    connections.after_step.push_back([&](const Run&) { stops.after_step(); });
     connections.after_step.push_back([&](const Run& r) { outputs.after_step(r); });
     connections.after_step.push_back([&](const Run& r) { watch.after_step(r); });
     connections.sinks = outputs.sinks();
@@ -282,7 +260,8 @@ int execute(const RunRequest& request) {
     terminal.end_progress();
     balance(run.simulation);
     const bool stopped = outcome == RunOutcome::stopped;
-    outputs.finish(run, stopped ? "stopped" : "done", stopped ? *run.stop_reason : "");
+    outputs.finish(run, stopped ? "stopped" : "done", stopped ? *run.stop_reason : "",
+                   stopped && stops.out_of_time() ? RunOutputs::Movies::leave : RunOutputs::Movies::make);
 
     if (stopped)
         terminal.say(fmt::format("Stopped at step {}, t = {}: {}.", run.simulation.step,
@@ -336,7 +315,8 @@ void add_run(CLI::App& program, Action& chosen) {
     run->add_flag("--no-render", request->no_render, "No pictures, no movie; data files as ever");
     run->add_option("--render-backend", request->backend, "auto, x11, xvfb, egl, osmesa or none")
         ->type_name("NAME");
-    run->add_option("--wall-limit", request->wall_limit, "Stop with a checkpoint after so long")
+    run->add_option("--wall-limit", request->wall_limit,
+                    "Stop with a checkpoint in time to end within so long")
         ->type_name("HH:MM:SS");
     run->add_flag("--overwrite", request->overwrite, "Replace the run that the folder holds");
     auto* quiet = run->add_flag("-q,--quiet", request->quiet, "Warnings and errors only");

@@ -1,5 +1,6 @@
 #include "run_outputs.hpp"
 
+#include "disk_need.hpp"
 #include "text.hpp"
 
 #include "meltscope/io/atomic_file.hpp"
@@ -182,7 +183,9 @@ void RunOutputs::write_checkpoint_of(const Run& run) {
     pipeline_->wait_for_earlier_than(run.simulation.time);
     const auto path = paths_.checkpoint(run.simulation.step);
     std::filesystem::create_directory(path.parent_path()); // fails if the run folder has been removed
+    const Stopwatch watch;
     write_checkpoint(path, checkpoint_of(run, scenario_text_));
+    longest_checkpoint_ = std::max(longest_checkpoint_, watch.seconds());
     prune_checkpoints(paths_, scenario_.checkpoint.keep);
     last_checkpoint_ = path;
     terminal_.note(fmt::format("checkpoint {}", path.string()));
@@ -236,14 +239,29 @@ void RunOutputs::make_movies() {
     }
 }
 
-void RunOutputs::finish(const Run& run, const std::string& outcome, const std::string& message) {
+double RunOutputs::seconds_to_stop(const Run& run) const {
+    constexpr double slow_disk = 1e8;             // B/s, for what was not written yet
+    constexpr double bytes_a_solid_point = 200.0; // in both of its files
+    const double checkpoint =
+        longest_checkpoint_ > 0.0 ? longest_checkpoint_ : checkpoint_bytes(run.simulation) / slow_disk;
+    const double points = run.solidification ? double(run.solidification->points.size()) : 0.0;
+    return checkpoint + points * bytes_a_solid_point / slow_disk + pipeline_->seconds_to_finish();
+}
+
+void RunOutputs::finish(const Run& run, const std::string& outcome, const std::string& message,
+                        Movies movies) {
     pipeline_->finish();
     const viz::PipelineStats stats = pipeline_->stats();
     terminal_.note(fmt::format(
         "pictures {}, files {}; the solver waited {} times for them, {:.2f} s; pictures given up {}",
         stats.frames, stats.files, stats.waits, stats.wait_seconds, stats.drops));
-    if (draws_ && std::filesystem::is_directory(paths_.frames()))
-        make_movies();
+    if (draws_ && std::filesystem::is_directory(paths_.frames())) {
+        if (movies == Movies::make)
+            make_movies();
+        else
+            terminal_.say(fmt::format("no movies for want of time: `meltscope movie {}` makes them",
+                                      paths_.root.string()));
+    }
     if (run.solidification) {
         write_solidification_table(paths_.solidification_table(), run.solidification->points);
         viz::write_solidification_points(paths_.solidification_points(), run.solidification->points);

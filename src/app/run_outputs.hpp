@@ -51,9 +51,14 @@ class RunOutputs {
     /// Writes the state that the run failed in; its file.
     std::filesystem::path keep_for_inspection(const Run& run) const;
 
+    /// About how long it takes to stop now, s: a checkpoint, pictures and files that are under way, tables.
+    double seconds_to_stop(const Run& run) const;
+
+    enum class Movies { make, leave };
     /// Waits for the pictures, makes the movies and writes run.json for the last time. `message` says why the
     /// run stopped or failed.
-    void finish(const Run& run, const std::string& outcome, const std::string& message);
+    void finish(const Run& run, const std::string& outcome, const std::string& message,
+                Movies movies = Movies::make);
 
     /// One line a kind of file: what it is and where.
     std::vector<std::string> list() const;
@@ -81,6 +86,7 @@ class RunOutputs {
     std::string pool_;
     std::int64_t steps_at_start_;
     std::optional<std::filesystem::path> last_checkpoint_;
+    double longest_checkpoint_ = 0.0; ///< s, to write it
     Stopwatch since_start_;
 };
 

@@ -33,8 +33,12 @@ void watch_signals() {
         action.sa_flags = SA_RESTART;   // a terminal that goes away and its shell both send one
         sigaction(SIGHUP, &action, nullptr);
     }
-    std::signal(SIGPIPE, SIG_IGN); // a reader of the output that goes away must not take the run along
-    std::signal(SIGXFSZ, SIG_IGN); // a file too large for a quota is an error of its writer, with a name
+    struct sigaction ignore = {};
+    ignore.sa_handler = SIG_IGN;
+    // A reader of the output that goes away must not take the run along; a file too large for a quota is an
+    // error of its writer, with a name.
+    sigaction(SIGPIPE, &ignore, nullptr);
+    sigaction(SIGXFSZ, &ignore, nullptr);
 }
 
 int stop_signal() {

@@ -93,14 +93,13 @@ void Terminal::log_to(const std::filesystem::path& file, bool append) {
 void Terminal::clear_progress_line() {
     if (shown_.empty())
         return;
-    std::fputs("\r\033[K", stdout);
+    show(stdout, "\r\033[K");
     shown_.clear();
 }
 
 void Terminal::speak_through(std::function<void(const std::string&)> speak) {
     const std::lock_guard lock(mutex_);
     clear_progress_line();
-    std::fflush(stdout);
     speak_ = std::move(speak);
 }
 
@@ -111,13 +110,11 @@ void Terminal::print(std::FILE* stream, const std::string& text) {
     }
     const std::string progress = shown_;
     clear_progress_line();
-    std::fflush(stdout);
-    std::fputs(fmt::format("{}\n", text).c_str(), stream);
+    show(stream, text + "\n");
     if (!progress.empty()) {
-        std::fputs(progress.c_str(), stdout);
+        show(stdout, progress);
         shown_ = progress;
     }
-    std::fflush(stdout);
 }
 
 void Terminal::say(const std::string& text) {
@@ -162,8 +159,7 @@ void Terminal::progress(const Progress& progress) {
     next_draw_ = std::chrono::steady_clock::now() + draw_interval;
     clear_progress_line();
     shown_ = progress_line(progress, terminal_width());
-    std::fputs(shown_.c_str(), stdout);
-    std::fflush(stdout);
+    show(stdout, shown_);
 }
 
 void Terminal::output_reached(const Progress& progress, double peak_temperature) {
@@ -178,7 +174,6 @@ void Terminal::output_reached(const Progress& progress, double peak_temperature)
 void Terminal::end_progress() {
     const std::lock_guard lock(mutex_);
     clear_progress_line();
-    std::fflush(stdout);
 }
 
 } // namespace meltscope

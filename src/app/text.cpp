@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <regex>
+#include <stdexcept>
 
 namespace meltscope {
 
@@ -16,10 +19,10 @@ std::string in_si(double value, std::string_view unit) {
         return fmt::format("{} {}", value, unit);
     // Rounded to three digits first, so that 999.9e-6 becomes 1.00e-3.
     const double rounded = std::stod(fmt::format("{:.2e}", value));
-    const int power = std::clamp(int(std::floor(std::log10(std::abs(rounded)) / 3.0 + 1e-9)), -4, 4);
+    const double power = std::clamp(std::floor(std::log10(std::abs(rounded)) / 3.0 + 1e-9), -4.0, 4.0);
     const double scaled = rounded / std::pow(1000.0, power);
     const int digits = std::abs(scaled) >= 100.0 ? 0 : std::abs(scaled) >= 10.0 ? 1 : 2;
-    return fmt::format("{:.{}f} {}{}", scaled, digits, prefixes[std::size_t(power + 4)], unit);
+    return fmt::format("{:.{}f} {}{}", scaled, digits, prefixes[std::size_t(power + 4.0)], unit);
 }
 
 std::string clock_time(double seconds) {
@@ -33,6 +36,16 @@ std::optional<double> parse_clock_time(std::string_view text) {
     if (!std::regex_match(text.begin(), text.end(), match, form))
         return std::nullopt;
     return 3600.0 * std::stoi(match[1]) + 60.0 * std::stoi(match[2]) + std::stoi(match[3]);
+}
+
+void print_result(const std::string& text) {
+    if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
+        throw std::runtime_error(fmt::format("standard output: {}", std::strerror(errno)));
+}
+
+void show(std::FILE* stream, const std::string& text) {
+    static_cast<void>(std::fputs(text.c_str(), stream));
+    static_cast<void>(std::fflush(stream));
 }
 
 } // namespace meltscope

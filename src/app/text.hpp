@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,5 +15,12 @@ std::string clock_time(double seconds);
 
 /// Reads HH:MM:SS into seconds; nothing if it is not of that form.
 std::optional<double> parse_clock_time(std::string_view text);
+
+/// Puts the results of a command on standard output. Throws std::runtime_error if they cannot be written, as
+/// to a full disk.
+void print_result(const std::string& text);
+
+/// Puts a message on standard output or error at once, if anybody is still there to read it.
+void show(std::FILE* stream, const std::string& text);
 
 } // namespace meltscope

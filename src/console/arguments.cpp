@@ -176,8 +176,8 @@ std::string shown(double value, std::string_view unit) {
     const double size = std::abs(value);
     if (!takes_prefix || !std::isfinite(size) || size < 1e-12 || size >= 1.0)
         return fmt::format("{:.6g} {}", value, unit);
-    const int power = int(std::floor(std::log10(size) / 3.0 + 1e-9));
-    return fmt::format("{:.6g} {}{}", value / std::pow(1000.0, power), prefixes[std::size_t(power + 4)],
+    const double power = std::floor(std::log10(size) / 3.0 + 1e-9);
+    return fmt::format("{:.6g} {}{}", value / std::pow(1000.0, power), prefixes[std::size_t(power + 4.0)],
                        unit);
 }
 

@@ -78,8 +78,7 @@ class EditedPrompt : public Prompt {
         thread_.join();
         signals_.reset();
         tcsetattr(STDIN_FILENO, TCSADRAIN, &terminal_before_);
-        std::fputs(output_.c_str(), stdout);
-        std::fflush(stdout);
+        to_terminal(output_);
     }
 
     void print(const std::string& text) override {
@@ -108,7 +107,8 @@ class EditedPrompt : public Prompt {
     }
 
     void edit_lines() {
-        std::setlocale(LC_CTYPE, ""); // typed characters; numbers stay as they are
+        // For typed characters; numbers stay as they are. Without that locale the one of C is as before.
+        static_cast<void>(std::setlocale(LC_CTYPE, ""));
         editor_ = el_init("meltscope", stdin, stdout, stderr);
         if (!editor_) {
             if (callbacks_.end)
@@ -122,8 +122,7 @@ class EditedPrompt : public Prompt {
             el_set(editor_, EL_PREP_TERM, 1);
             // What was typed since the line before may have been echoed by the terminal; the editor reads and
             // shows it.
-            std::fputs("\r\033[J", stdout);
-            std::fflush(stdout);
+            to_terminal("\r\033[J");
             int count = 0;
             const char* text = el_gets(editor_, &count);
             if (!text || count <= 0)
@@ -138,7 +137,7 @@ class EditedPrompt : public Prompt {
                 callbacks_.line(line);
         }
         if (ending_)
-            leave_line();
+            to_terminal(line_cleared()); // what comes after the prompt's end begins on a row of its own
         el_end(editor_);
         if (!ending_ && callbacks_.end)
             callbacks_.end();
@@ -166,22 +165,20 @@ class EditedPrompt : public Prompt {
         el_set(editor_, EL_HIST, history, history_.get());
     }
 
-    /// To the beginning of the line being typed, which may take several rows, and clears it.
-    void clear_line() {
+    /// Takes the terminal to the beginning of the line being typed, which may take several rows, and clears
+    /// it.
+    std::string line_cleared() const {
         const LineInfoW* line = el_wline(editor_);
         std::size_t typed = prompt_.size();
         for (const wchar_t* c = line->buffer; c < line->cursor; ++c)
             typed += std::size_t(std::max(0, wcwidth(*c)));
-        std::fputs("\r", stdout);
-        if (const std::size_t rows_up = typed / columns_; rows_up > 0)
-            std::fprintf(stdout, "\033[%zuA", rows_up);
-        std::fputs("\033[J", stdout);
+        const std::size_t rows_up = typed / columns_;
+        return rows_up > 0 ? fmt::format("\r\033[{}A\033[J", rows_up) : "\r\033[J";
     }
 
     /// The line again. EL_REFRESH alone begins wherever the cursor stands.
     void redraw() {
-        clear_line();
-        std::fflush(stdout);
+        to_terminal(line_cleared());
         el_set(editor_, EL_REFRESH);
     }
 
@@ -190,23 +187,14 @@ class EditedPrompt : public Prompt {
         const std::lock_guard lock(mutex_);
         if (output_.empty())
             return;
-        clear_line();
-        std::fputs(output_.c_str(), stdout);
-        std::fflush(stdout);
+        to_terminal(line_cleared() + output_);
         output_.clear();
         el_set(editor_, EL_REFRESH);
     }
 
-    /// What comes after the prompt's end begins on a row of its own.
-    void leave_line() {
-        clear_line();
-        std::fflush(stdout);
-    }
-
     void follow_size() {
         columns_ = terminal_columns(); // terminals wrap what they show anew
-        clear_line();
-        std::fflush(stdout);
+        to_terminal(line_cleared());
         el_resize(editor_);
         el_set(editor_, EL_REFRESH);
     }
@@ -276,7 +264,7 @@ class EditedPrompt : public Prompt {
     static unsigned char delete_or_end(EditLine* editor, int) {
         const LineInfo* line = el_line(editor);
         if (line->lastchar == line->buffer) {
-            std::fputs("\n", stdout);
+            to_terminal("\n");
             return CC_EOF;
         }
         if (line->cursor < line->lastchar) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <utility>
 
 namespace meltscope {
@@ -54,6 +55,11 @@ bool TerminalSignals::take_interrupt() {
 
 bool TerminalSignals::take_resize() {
     return resize_came.exchange(false);
+}
+
+void to_terminal(const std::string& text) {
+    static_cast<void>(std::fputs(text.c_str(), stdout));
+    static_cast<void>(std::fflush(stdout));
 }
 
 bool wait_for_input(WakePipe& pipe, int milliseconds) {

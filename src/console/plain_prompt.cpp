@@ -3,7 +3,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <mutex>
 #include <optional>
 #include <string_view>
@@ -33,13 +32,13 @@ class PlainPrompt : public Prompt {
         pipe_.wake();
         thread_.join();
         if (asked_)
-            put("\n");
+            to_terminal("\n");
     }
 
     void print(const std::string& text) override {
         const std::lock_guard lock(mutex_);
         const bool line_begun = std::exchange(asked_, false);
-        put((line_begun ? "\n" : "") + text + (text.ends_with('\n') ? "" : "\n"));
+        to_terminal((line_begun ? "\n" : "") + text + (text.ends_with('\n') ? "" : "\n"));
         // Whoever has been asked already may be typing. Others are asked when no more answers come.
         if (line_begun)
             ask();
@@ -48,16 +47,11 @@ class PlainPrompt : public Prompt {
     bool edits() const override { return false; }
 
   private:
-    static void put(const std::string& text) {
-        std::fputs(text.c_str(), stdout);
-        std::fflush(stdout);
-    }
-
     /// Needs the mutex.
     void ask() {
         if (!person_ || std::exchange(asked_, true))
             return;
-        put(prompt_);
+        to_terminal(prompt_);
     }
 
     bool is_asked() {
@@ -76,7 +70,7 @@ class PlainPrompt : public Prompt {
             if (signals_ && signals_->take_interrupt()) {
                 {
                     const std::lock_guard lock(mutex_);
-                    put("\n"); // the terminal has dropped what was typed
+                    to_terminal("\n"); // the terminal has dropped what was typed
                     asked_ = false;
                 }
                 line_.clear();

@@ -25,6 +25,10 @@ std::unique_ptr<Prompt> make_plain_prompt(std::string prompt, LineEditor::Callba
 std::unique_ptr<Prompt> make_edited_prompt(std::string prompt, std::filesystem::path history,
                                            LineEditor::Callbacks callbacks);
 
+/// Puts text on standard output at once. A terminal that is gone takes nothing; its end of input ends the
+/// prompt.
+void to_terminal(const std::string& text);
+
 /// Waits until standard input can be read or the pipe wakes; true if it can be read.
 bool wait_for_input(WakePipe& pipe, int milliseconds);
 

@@ -129,7 +129,7 @@ std::string do_until(Call& call) {
     };
     const bool step = drop("step");
     const bool time = !step && (target.starts_with("t=") || target.starts_with("t ")) && drop("t");
-    target.erase(0, target.find_first_not_of(" "));
+    target.erase(0, target.find_first_not_of(' '));
     drop("=");
     Arguments arguments(split_words(target), call.console.units);
     if (!step) {

@@ -130,11 +130,11 @@ H5FD_class_t sink_class() {
 
 Hdf5Handle make_sink_access(CheckpointSink& sink) {
     const auto driver_class = sink_class();
-    const Hdf5Handle driver(H5FDregister(&driver_class), H5FDunregister);
+    sink.driver.emplace(H5FDregister(&driver_class), H5FDunregister);
     Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     const SinkReference reference{&sink};
-    // The properties keep the driver alive from here on. Nobody else can reach the file: it needs no lock.
-    if (H5Pset_driver(access, driver, &reference) < 0 || H5Pset_file_locking(access, false, true) < 0)
+    // Nobody else can reach the file: it needs no lock.
+    if (H5Pset_driver(access, *sink.driver, &reference) < 0 || H5Pset_file_locking(access, false, true) < 0)
         return {-1, H5Pclose};
     return access;
 }

@@ -2,6 +2,8 @@
 
 #include "hdf5_support.hpp"
 
+#include <optional>
+
 namespace meltscope {
 
 /// Where HDF5 puts a checkpoint: an open file, and the first thing that went wrong with it.
@@ -13,6 +15,8 @@ struct CheckpointSink {
     haddr_t allocated = 0; ///< bytes that HDF5 has laid out
     haddr_t length = 0;    ///< bytes that the file has
     int error_number = 0;  ///< errno of the first failure; zero while all is well
+    /// Of HDF5, which reads the driver once more after the file, when it closes, has let go of it.
+    std::optional<Hdf5Handle> driver = std::nullopt;
 };
 
 /// File access properties under which H5Fcreate writes into `sink`, whatever name it is given. `sink`

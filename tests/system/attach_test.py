@@ -1,6 +1,7 @@
 """Runs are steered through the socket in their folder."""
 
 import os
+import pathlib
 import random
 import shutil
 import signal
@@ -77,6 +78,43 @@ class Attach(Steered):
         self.start()
         mode = stat.S_IMODE((self.folder / "run" / "console.sock").stat().st_mode)
         self.assertEqual(mode, 0o600)
+
+    def test_a_run_opens_no_port(self):
+        process = self.start()
+        sockets = set()
+        for descriptor in os.listdir(f"/proc/{process.pid}/fd"):
+            try:
+                sockets.add(os.readlink(f"/proc/{process.pid}/fd/{descriptor}"))
+            except FileNotFoundError:  # closed meanwhile
+                pass
+        self.assertTrue([name for name in sockets if name.startswith("socket:")])
+        for protocol in ("tcp", "tcp6", "udp", "udp6", "raw", "raw6"):
+            table = pathlib.Path(f"/proc/{process.pid}/net/{protocol}")
+            if table.exists():  # some kernels lack one or the other
+                for row in table.read_text().splitlines()[1:]:
+                    self.assertNotIn(f"socket:[{row.split()[9]}]", sockets, protocol + row)
+
+    def run_on(self):
+        """A run is taken up in its folder for one step; its log."""
+        result = subprocess.run([PROGRAM, "run", "--restart", str(checkpoints(self.folder / "run")[-1]), "--no-render",
+                                 "--steps", "1"], capture_output=True, text=True, timeout=PATIENCE)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return (self.folder / "run" / "log.txt").read_text()
+
+    def test_what_else_is_called_like_the_socket_stays(self):
+        self.run_small("run", "--steps", 1)
+        other = self.folder / "run" / "console.sock"
+        other.write_text("mine")
+        self.assertIn("console.sock is in the way", self.run_on())
+        self.assertEqual(other.read_text(), "mine")
+
+    def test_a_run_in_the_folder_of_somebody_else_has_no_socket(self):
+        if os.geteuid() != 0:
+            self.skipTest("needs root, to give a folder away")
+        self.run_small("run", "--steps", 1)
+        os.chown(self.folder / "run", 65534, 65534)
+        self.assertIn("belongs to another user", self.run_on())
+        self.assertFalse((self.folder / "run" / "console.sock").exists())
 
     def test_one_writes_and_the_others_watch(self):
         self.start()

@@ -11,7 +11,7 @@ import time
 import unittest
 import xml.etree.ElementTree as xml
 
-from program import PATIENCE, PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints, meltscope
+from program import PATIENCE, PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints, meltscope, stop_for_a_while
 
 # Goes on until it is stopped, with files and a checkpoint every few steps.
 ENDLESS = ["--set", "domain.cell_size=40 um", "--set", "time.max_step=1 us", "--set", "time.end=10 s", "--set",
@@ -46,11 +46,6 @@ class Faults(ProgramTest):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.01)
 
-    def stop(self, process):
-        """Stops the process for a while (SIGCONT lets it go on); returns once none of its threads runs."""
-        process.send_signal(signal.SIGSTOP)
-        os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
-
     def must_fail(self, process, *words):
         """Exit code 1, with an error that holds the words; returns it."""
         _, errors = process.communicate(timeout=PATIENCE)
@@ -81,7 +76,7 @@ class Faults(ProgramTest):
     def test_a_checkpoint_over_the_quota_stops_the_run_and_leaves_the_one_before(self):
         process = self.start()
         self.wait_for_checkpoint(process)
-        self.stop(process)
+        stop_for_a_while(process)
         before = {path: path.read_bytes() for path in checkpoints(self.run_folder)}
         resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (200_000, resource.RLIM_INFINITY))
         process.send_signal(signal.SIGCONT)
@@ -96,7 +91,7 @@ class Faults(ProgramTest):
         process = self.start()
         self.wait_for_checkpoint(process)
         folder = self.run_folder / "checkpoints"
-        self.stop(process)  # a file that it opened between the two mounts would keep the second from being read-only
+        stop_for_a_while(process)  # a file opened between the two mounts would keep the second from being read-only
         self.mounted(folder, "--bind", str(folder))
         subprocess.run(["mount", "-o", "remount,ro,bind", str(folder)], check=True)
         process.send_signal(signal.SIGCONT)
@@ -121,6 +116,17 @@ class Faults(ProgramTest):
             shutil.rmtree(self.run_folder, ignore_errors=True)
         self.must_fail(process, "No such file or directory", str(self.run_folder))
         self.assertFalse(self.run_folder.exists())
+
+
+class Results(ProgramTest):
+    def test_results_of_a_command_that_cannot_be_written_are_an_error(self):
+        self.run_small("run", "--steps", 1)
+        for words in (["check", QUICK_LOOK, *SMALL], ["info", self.folder / "run"], ["report", self.folder / "run"]):
+            with self.subTest(words=words), open("/dev/full", "w", encoding="ascii") as full:
+                result = subprocess.run([PROGRAM, *map(str, words)], stdout=full, stderr=subprocess.PIPE, text=True,
+                                        timeout=PATIENCE)
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assertIn("standard output: No space left on device", result.stderr)
 
 
 class Locks(ProgramTest):

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from program import PATIENCE, PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints
+from program import PATIENCE, PROGRAM, QUICK_LOOK, SMALL, ProgramTest, checkpoints, stop_for_a_while
 
 # Two hundred steps and more, so that something can happen meanwhile; the end is the only checkpoint.
 RUN = [*SMALL, "--set", "time.max_step=1 us", "--set", "checkpoint.every=1 s", "--set", "render.size=[320,180]"]
@@ -97,8 +97,7 @@ class Faults(ProgramTest):
         while not (folder / "surface.pvd").exists():
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.01)
-        process.send_signal(signal.SIGSTOP)  # more files may be on their way
-        os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+        stop_for_a_while(process)  # more files may be on their way
         shutil.rmtree(folder)
         process.send_signal(signal.SIGCONT)
         process.stdin.write("run\n")

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import tempfile
 import unittest
@@ -51,3 +52,9 @@ class ProgramTest(unittest.TestCase):
 
 def checkpoints(run):
     return sorted((run / "checkpoints").glob("step_*.h5"))
+
+
+def stop_for_a_while(process):
+    """Stops the process until SIGCONT lets it go on; returns once none of its threads runs."""
+    process.send_signal(signal.SIGSTOP)
+    os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)

@@ -4,6 +4,7 @@ import json
 import os
 import pty
 import select
+import shutil
 import signal
 import subprocess
 import time
@@ -145,11 +146,31 @@ class Stops(ProgramTest):
         process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, 3)
 
-    def test_wall_limit_stops_with_a_checkpoint(self):
-        result = meltscope("run", QUICK_LOOK, *ENDLESS, "--no-render", "--output", self.folder / "run", "--wall-limit",
-                           "00:00:01")
+    def must_end_within_its_limit(self, *arguments, **options):
+        """A run that would go on for hours ends with a checkpoint within 3 s, by its own clock.
+
+        20 s more are granted to a machine that has other things to do. Its next output is hours away, too."""
+        result = meltscope("run", QUICK_LOOK, *ENDLESS, "--output", self.folder / "run", "--wall-limit", "00:00:03",
+                           *arguments, **options)
         self.assertEqual(result.returncode, 3, result.stderr)
-        self.assertEqual(len(checkpoints(self.folder / "run")), 1)
+        summary = json.loads((self.folder / "run" / "run.json").read_text())
+        self.assertEqual(summary["outcome"], "stopped")
+        self.assertIn("wall limit of 0:00:03", summary["message"])
+        self.assertLess(summary["wall_seconds"]["total"], 3 + 20)
+        self.assertEqual([path.name for path in checkpoints(self.folder / "run")], [f"step_{summary['steps']:09d}.h5"])
+        return result.stdout
+
+    def test_wall_limit_ends_a_run_in_time_with_a_checkpoint(self):
+        self.must_end_within_its_limit("--no-render")
+
+    @unittest.skipUnless(shutil.which("Xvfb"), "no Xvfb")
+    def test_wall_limit_is_kept_though_the_movie_would_take_a_minute(self):
+        (self.folder / "ffmpeg").write_text("#!/bin/sh\nsleep 60\n")
+        (self.folder / "ffmpeg").chmod(0o755)
+        path = os.pathsep.join([str(self.folder), os.environ["PATH"]])
+        words = self.must_end_within_its_limit("--set", "render.size=[320,180]", env={**os.environ, "PATH": path})
+        self.assertTrue(list((self.folder / "run" / "frames").glob("*.png")))
+        self.assertIn(f"meltscope movie {self.folder / 'run'}", words)
 
     def test_a_second_run_cannot_have_the_folder(self):
         process = self.start_endless()

@@ -4,6 +4,16 @@
 
 namespace meltscope {
 
+namespace {
+
+/// Whether threads that share the nodes of all faces gain more than it takes to call them.
+bool has_many_face_nodes(const Grid& grid) {
+    const Index3 planes = grid.cells + 3;
+    return 2 * (planes[0] * planes[1] + planes[1] * planes[2] + planes[2] * planes[0]) > 10000;
+}
+
+} // namespace
+
 FacePlanes face_planes(const Grid& grid, int f) {
     const int axis = f / 2;
     // Storage coordinates start at the lower ghost plane.
@@ -15,6 +25,7 @@ FacePlanes face_planes(const Grid& grid, int f) {
 
 void fold_ghosts(const Grid& grid, const Boundary& boundary, AtFixedFaces at_fixed, Field& field) {
     // Axis after axis, ghosts of the later axes included, so that edges and corners reach their mirror nodes.
+#pragma omp parallel if (has_many_face_nodes(grid))
     for (int f = 0; f < 6; ++f) {
         if (boundary[f].fixes_temperature()) {
             if (at_fixed == AtFixedFaces::leave)
@@ -34,6 +45,7 @@ void fold_ghosts(const Grid& grid, const Boundary& boundary, AtFixedFaces at_fix
 }
 
 void mirror_ghosts(const Grid& grid, const Boundary& boundary, Field& field) {
+#pragma omp parallel if (has_many_face_nodes(grid))
     for (int f = 0; f < 6; ++f)
         if (!boundary[f].fixes_temperature())
             for_each_face_node(grid, f, [&](std::int64_t ghost, std::int64_t, std::int64_t mirror) {

@@ -37,15 +37,15 @@ FacePlanes face_planes(const Grid& grid, int f);
 /// Calls work(a, b, c) for every node of the face's planes, ghosts of the other axes included: a, b, c are
 /// the storage indices of the ghost node, the face node and the mirror node that share the other two
 /// coordinates.
+///
+/// Threads that call it together share the nodes, and none goes on before all are done.
 template <class Work>
 void for_each_face_node(const Grid& grid, int f, Work work) {
     const FacePlanes planes = face_planes(grid, f);
     const std::array<std::int64_t, 3> stride{1, grid.stride_y, grid.stride_z};
     const int u = planes.axis == 0 ? 1 : 0, v = planes.axis == 2 ? 1 : 2;
     const std::int64_t step = stride[planes.axis];
-    // Waking the threads takes as long as some ten thousand nodes.
-    const bool many = (grid.cells[u] + 3) * (grid.cells[v] + 3) > 100000;
-#pragma omp parallel for schedule(static) if (many)
+#pragma omp for schedule(static)
     for (std::int64_t q = 0; q < grid.cells[v] + 3; ++q)
         for (std::int64_t p = 0; p < grid.cells[u] + 3; ++p) {
             const std::int64_t base = p * stride[u] + q * stride[v];

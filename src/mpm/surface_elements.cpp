@@ -4,6 +4,7 @@
 #include "meltscope/mpm/group_stencils.hpp"
 
 #include <algorithm>
+#include <memory>
 
 namespace meltscope {
 namespace {
@@ -21,9 +22,18 @@ std::int64_t corner_of(const LaneLayout& layout, std::int64_t entry) {
     return group->corner + entry % lane_count;
 }
 
+/// An array in the layout's order, zero throughout; threads share what takes as long as half of a deposit.
+std::unique_ptr<double[]> zeros_in_layout(const LaneLayout& layout) {
+    auto zeros = std::make_unique_for_overwrite<double[]>(layout.size());
+#pragma omp parallel for schedule(static)
+    for (std::int64_t at = 0; at < layout.size(); ++at)
+        zeros[at] = 0.0;
+    return zeros;
+}
+
 /// D_i += energy N_i(x_s), energy in the layout's order and normalized. A node without mass takes its share
 /// too, which the normalization has given to the others; step 6 ignores it.
-void deposit_normalized(const Grid& grid, const SurfaceElements& elements, const Field& energy,
+void deposit_normalized(const Grid& grid, const SurfaceElements& elements, const double* energy,
                         Nodes& nodes) {
     for_each_block(elements.layout, [&](const LaneBlock& block) {
         for (std::int64_t g = block.first_group; g < block.last_group; ++g) {
@@ -49,24 +59,24 @@ void deposit_normalized(const Grid& grid, const SurfaceElements& elements, const
 
 void deposit(const Grid& grid, const SurfaceElements& elements, std::span<const double> energy,
              Nodes& nodes) {
-    Field in_layout(elements.layout.size(), 0.0);
+    const auto in_layout = zeros_in_layout(elements.layout);
 #pragma omp parallel for schedule(static)
     for (std::size_t s = 0; s < energy.size(); ++s) {
         const std::int64_t at = elements.layout.place[s];
         in_layout[at] = energy[s] * elements.normalization[at];
     }
-    deposit_normalized(grid, elements, in_layout, nodes);
+    deposit_normalized(grid, elements, in_layout.get(), nodes);
 }
 
 void deposit(const Grid& grid, const SurfaceElements& elements, const ElementHeat& energy, Nodes& nodes) {
     if (double(energy.element.size()) > few * double(elements.count())) {
-        Field in_layout(elements.layout.size(), 0.0);
+        const auto in_layout = zeros_in_layout(elements.layout);
 #pragma omp parallel for schedule(static)
         for (std::size_t n = 0; n < energy.element.size(); ++n) {
             const std::int64_t at = elements.layout.place[energy.element[n]];
             in_layout[at] = energy.amount[n] * elements.normalization[at];
         }
-        return deposit_normalized(grid, elements, in_layout, nodes);
+        return deposit_normalized(grid, elements, in_layout.get(), nodes);
     }
     for (std::size_t n = 0; n < energy.element.size(); ++n) {
         const std::int64_t at = elements.layout.place[energy.element[n]];

@@ -81,7 +81,7 @@ Simulation set_up(const Scenario& scenario, SetupFigures& figures) {
     count_bytes(s, figures);
     figures.nodes_in_band = count_nodes_in_band(s);
     std::vector<double> surface, all;
-    for (int n = 0; n < 3; ++n) {
+    for (int n = 0; n < 7; ++n) {
         surface.push_back(seconds_of([&] {
             const Field phi = signed_distance(s.grid, s.particles, s.parameters.level_set);
             find_surface_areas(s.grid, s.particles, phi, regularized(s.grid, phi, s.parameters.level_set));

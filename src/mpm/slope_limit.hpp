@@ -51,8 +51,8 @@ void shorten_slopes(const Lanes& least, const double* energy, Gathered<n>& slope
         const auto too_steep = squared > room * room;
         if (none_of(too_steep))
             continue;
-        const Lanes share(
-            [&](int lane) { return too_steep[lane] ? room[lane] / std::sqrt(squared[lane]) : 1.0; });
+        const Lanes share =
+            select(too_steep, room / sqrt(select(too_steep, squared, Lanes(1.0))), Lanes(1.0));
         slope.x[p] *= share;
         slope.y[p] *= share;
         slope.z[p] *= share;

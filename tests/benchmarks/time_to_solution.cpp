@@ -156,7 +156,7 @@ void compare(double dx) {
 
 int main(int count, char** words) {
     using namespace meltscope;
-    std::vector<double> cells{20.0, 125.0 / 7.0, 15.625, 12.5, 10.0};
+    std::vector<double> cells{20.0, 500.0 / 27.0, 15.625, 500.0 / 34.0, 12.5, 10.0};
     if (count > 1) {
         cells.clear();
         for (int n = 1; n < count; ++n)

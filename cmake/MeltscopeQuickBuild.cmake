@@ -8,8 +8,14 @@ if(NOT MELTSCOPE_QUICK_BUILD MATCHES "^(off|around_solver|all)$")
 endif()
 
 # Compiles the sources of a target room by room. A name that is local to a file is then to be unique in its room.
+# The solver's files are compiled one by one with `around_solver`, on the headers that nearly all of them include.
 function(meltscope_compile_rooms_whole target)
-  if(MELTSCOPE_QUICK_BUILD STREQUAL "off" OR (target STREQUAL "meltscope" AND NOT MELTSCOPE_QUICK_BUILD STREQUAL "all"))
+  if(MELTSCOPE_QUICK_BUILD STREQUAL "off")
+    return()
+  endif()
+  if(target STREQUAL "meltscope" AND MELTSCOPE_QUICK_BUILD STREQUAL "around_solver")
+    target_precompile_headers(meltscope PRIVATE
+      <algorithm> <cmath> <functional> <numeric> <string> <vector> <fmt/format.h> <Eigen/Geometry> <meltscope/mpm/group_stencils.hpp>)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
@@ -22,7 +28,7 @@ function(meltscope_compile_rooms_whole target)
   endforeach()
 endfunction()
 
-# Compiles a test of the solver's side on the headers that nearly all of them include.
+# Compiles a test on the headers that nearly all of them include.
 function(meltscope_precompile_test_headers target)
   if(MELTSCOPE_QUICK_BUILD STREQUAL "off")
     return()
@@ -35,4 +41,6 @@ function(meltscope_precompile_test_headers target)
       <gtest/gtest.h> <fmt/format.h> <filesystem> <fstream> <random> <meltscope/run/run_loop.hpp>)
   endif()
   target_precompile_headers(${target} REUSE_FROM meltscope_test_headers)
+  # GCC takes them only under the same definitions; programs that are no GoogleTest lack these.
+  target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:GTest::gtest,INTERFACE_COMPILE_OPTIONS>)
 endfunction()

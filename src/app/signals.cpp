@@ -1,17 +1,20 @@
 #include "signals.hpp"
 
+#include <atomic>
 #include <csignal>
 
 namespace meltscope {
 namespace {
 
-// A signal handler can reach nothing but this.
-volatile std::sig_atomic_t stop_requested = 0;
-volatile std::sig_atomic_t checkpoint_requested = 0;
+// A signal handler can reach nothing but this. Atomic, since any thread may be interrupted by it, and the
+// run's looks here.
+std::atomic<int> stop_requested = 0;
+std::atomic<bool> checkpoint_requested = false;
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 void on_signal(int signal) {
     if (signal == SIGUSR1)
-        checkpoint_requested = 1;
+        checkpoint_requested = true;
     else
         stop_requested = signal;
 }
@@ -46,9 +49,7 @@ int stop_signal() {
 }
 
 bool take_checkpoint_request() {
-    const bool asked = checkpoint_requested != 0;
-    checkpoint_requested = 0;
-    return asked;
+    return checkpoint_requested.exchange(false);
 }
 
 } // namespace meltscope

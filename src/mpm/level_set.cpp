@@ -26,7 +26,7 @@ constexpr double foot_tolerance = 0.4;
 constexpr double smoothed_away = 0.25;
 
 /// Where the volume fraction differs from one by no more than round-off, no surface is near.
-constexpr double round_off = 1e-13;
+constexpr double fill_round_off = 1e-13;
 
 /// The distance that the smoothed fraction tells where it is zero, in cells; minus this where it is one.
 constexpr double beyond_smoothing = 1.5;
@@ -82,7 +82,7 @@ Field smoothed_distance(const Grid& grid, const Particles& particles) {
         }
         for (std::int64_t i = first; i < end; ++i) {
             const double filled = row[i] / (cell * grid.share_in_box(i, j, k));
-            row[i] = filled >= 1.0 - round_off ? -beyond_smoothing : distance_of_fraction(filled);
+            row[i] = filled >= 1.0 - fill_round_off ? -beyond_smoothing : distance_of_fraction(filled);
         }
     });
     mirror_ghosts(grid, Boundary{}, fraction);

@@ -15,7 +15,7 @@
 namespace meltscope {
 namespace {
 
-constexpr double dx = 5e-6;
+constexpr double spacing = 5e-6;
 
 Material with_emissivity(double emissivity) {
     Material material = plain_steel();
@@ -29,20 +29,21 @@ RadiativeExchange exchange_of(const LatticeBody& body) {
 
 /// A block with a hollow ball in it.
 LatticeBody cavity(double emissivity) {
-    return make_lattice_body(with_emissivity(emissivity), dx, {24, 24, 24}, 300.0,
-                             [](const Vec3& x) { return (x - Vec3::Constant(12.2 * dx)).norm() > 8.0 * dx; });
+    return make_lattice_body(with_emissivity(emissivity), spacing, {24, 24, 24}, 300.0, [](const Vec3& x) {
+        return (x - Vec3::Constant(12.2 * spacing)).norm() > 8.0 * spacing;
+    });
 }
 
 /// Two slabs that face each other across a gap half as wide as they are.
 LatticeBody facing_plates(double emissivity) {
-    return make_lattice_body(with_emissivity(emissivity), dx, {24, 24, 20}, 300.0,
-                             [](const Vec3& x) { return x.z() < 4.0 * dx || x.z() > 16.0 * dx; });
+    return make_lattice_body(with_emissivity(emissivity), spacing, {24, 24, 20}, 300.0,
+                             [](const Vec3& x) { return x.z() < 4.0 * spacing || x.z() > 16.0 * spacing; });
 }
 
 LatticeBody two_balls() {
-    return make_lattice_body(with_emissivity(0.4), dx, {32, 18, 18}, 300.0, [](const Vec3& x) {
-        return (x - dx * Vec3(8.5, 9.0, 9.0)).norm() < 6.5 * dx ||
-               (x - dx * Vec3(22.5, 9.0, 9.0)).norm() < 6.5 * dx;
+    return make_lattice_body(with_emissivity(0.4), spacing, {32, 18, 18}, 300.0, [](const Vec3& x) {
+        return (x - spacing * Vec3(8.5, 9.0, 9.0)).norm() < 6.5 * spacing ||
+               (x - spacing * Vec3(22.5, 9.0, 9.0)).norm() < 6.5 * spacing;
     });
 }
 
@@ -51,8 +52,8 @@ double black_flux(double t, double ambient) {
 }
 
 TEST(RadiativeExchange, flat_plate_reabsorbs_nothing) {
-    const LatticeBody body = make_lattice_body(with_emissivity(0.4), dx, {16, 16, 10}, 300.0,
-                                               [](const Vec3& x) { return x.z() < 4.3 * dx; });
+    const LatticeBody body = make_lattice_body(with_emissivity(0.4), spacing, {16, 16, 10}, 300.0,
+                                               [](const Vec3& x) { return x.z() < 4.3 * spacing; });
     const RadiativeExchange exchange = exchange_of(body);
     EXPECT_EQ(exchange.cost.factors, 0);
     std::vector<double> power(body.surface.elements.count(), 0.0);
@@ -62,8 +63,9 @@ TEST(RadiativeExchange, flat_plate_reabsorbs_nothing) {
 
 TEST(RadiativeExchange, ball_reabsorbs_nothing) {
     const LatticeBody body =
-        make_lattice_body(with_emissivity(0.4), dx, {20, 20, 20}, 300.0,
-                          [](const Vec3& x) { return (x - Vec3::Constant(10.1 * dx)).norm() < 6.0 * dx; });
+        make_lattice_body(with_emissivity(0.4), spacing, {20, 20, 20}, 300.0, [](const Vec3& x) {
+            return (x - Vec3::Constant(10.1 * spacing)).norm() < 6.0 * spacing;
+        });
     EXPECT_EQ(exchange_of(body).cost.factors, 0);
 }
 
@@ -89,7 +91,7 @@ TEST(RadiativeExchange, closed_cavity_with_a_hot_spot_keeps_its_energy) {
     std::vector<double> power(elements.count(), 0.0), temperature(elements.count());
     double emitted = 0.0;
     for (std::int64_t s = 0; s < elements.count(); ++s) {
-        temperature[s] = elements.point[s].z() > 16.0 * dx ? 2500.0 : 300.0;
+        temperature[s] = elements.point[s].z() > 16.0 * spacing ? 2500.0 : 300.0;
         emitted += 0.4 * black_flux(temperature[s], 300.0) * elements.area[s];
     }
     EXPECT_NEAR(reabsorbed_power(exchange_of(body), elements, temperature, 300.0, power), emitted,
@@ -122,7 +124,7 @@ TEST(RadiativeExchange, facing_plates_exchange_what_their_view_factor_says) {
     // Parallel squares of side 2 H at the distance H: F = 0.41525 (Howell, catalog of configuration factors,
     // C-11).
     constexpr double view = 0.41525;
-    const double area = 24 * 24 * dx * dx;
+    const double area = 24 * 24 * spacing * spacing;
     for (const double emissivity : {1.0, 0.4}) {
         const LatticeBody body = facing_plates(emissivity);
         const SurfaceElements& elements = body.surface.elements;

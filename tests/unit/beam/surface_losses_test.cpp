@@ -13,12 +13,12 @@
 namespace meltscope {
 namespace {
 
-constexpr double dx = 10e-6;
+constexpr double plate_dx = 10e-6;
 
 /// A slab whose upper face, at 6.3 cells, is a free surface; the other faces are adiabatic.
 LatticeBody slab(double temperature, std::int64_t across = 6) {
-    return make_lattice_body(plain_steel(), dx, {across, 4, 9}, temperature,
-                             [](const Vec3& x) { return x.z() < 6.3 * dx; });
+    return make_lattice_body(plain_steel(), plate_dx, {across, 4, 9}, temperature,
+                             [](const Vec3& x) { return x.z() < 6.3 * plate_dx; });
 }
 
 LossOptions only_convection(double h, double ambient) {
@@ -123,7 +123,7 @@ TEST(SurfaceLosses, a_small_step_loses_flux_times_area_times_time) {
     const LossEnergy lost = step(body, laws, loss, 0.0, dt);
     const std::vector<double>& areas = body.surface.elements.area;
     const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
-    EXPECT_NEAR(area, 6 * 4 * dx * dx, 0.03 * area);
+    EXPECT_NEAR(area, 6 * 4 * plate_dx * plate_dx, 0.03 * area);
     const LossFlux flux = loss_flux(laws[0], 2900.0);
     EXPECT_NEAR(lost.evaporated, flux.evaporation * area * dt, 1e-3 * lost.evaporated);
     EXPECT_NEAR(lost.radiated, flux.radiation * area * dt, 1e-3 * lost.radiated);
@@ -169,7 +169,7 @@ TEST(SurfaceLosses, one_implicit_step_converges_to_many_small_explicit_ones) {
     const Material steel = plain_steel();
     const std::vector<EquationOfState> eos{make_equation_of_state(steel)};
     const std::vector<LossLaw> laws = make_loss_laws({steel}, all_losses());
-    const double area = dx * dx, mass = 0.5 * steel.density * dx * dx * dx;
+    const double area = plate_dx * plate_dx, mass = 0.5 * steel.density * plate_dx * plate_dx * plate_dx;
     const double time = 1e-5;
     const auto run = [&](int steps, bool implicit) {
         double e = eos[0].energy(3300.0);
@@ -194,7 +194,7 @@ TEST(SurfaceLosses, elements_lose_in_groups_what_each_loses_alone) {
     LatticeBody body = slab(300.0, 19);
     const std::vector<LossLaw> laws = make_loss_laws(body.materials, all_losses());
     for (std::int64_t q = 0; q < body.particles.count(); ++q) {
-        const double t = 400.0 + 3000.0 * body.particles.position[q].x() / (19.0 * dx);
+        const double t = 400.0 + 3000.0 * body.particles.position[q].x() / (19.0 * plate_dx);
         body.particles.specific_energy[body.particles.layout.place[q]] = body.eos[0].energy(t);
     }
     particles_to_grid(body.grid, body.particles, nullptr, body.nodes);

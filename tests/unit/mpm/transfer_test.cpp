@@ -15,7 +15,7 @@ const std::vector<EquationOfState>& constant() {
     return materials;
 }
 
-double sum_of(const Field& field) {
+double exact_sum(const Field& field) {
     long double sum = 0.0; // so that the test's own round-off does not show
     for (const double value : field)
         sum += value;
@@ -45,14 +45,14 @@ TEST(Transfer, mass_and_energy_arrive_at_the_nodes_undiminished) {
         for (const bool jittered : {false, true}) {
             const Particles particles = slab(box(), n, jittered, uneven);
             Nodes nodes = make_nodes(box(), particles, 1, Boundary{});
-            EXPECT_NEAR(sum_of(nodes.mass) / sum_of(particles.mass), 1.0, 1e-13);
+            EXPECT_NEAR(exact_sum(nodes.mass) / exact_sum(particles.mass), 1.0, 1e-13);
             std::vector<Field> gradient_of{Field(box().size)};
             for (std::size_t i = 0; i < gradient_of[0].size(); ++i)
                 gradient_of[0][i] = 500.0 * std::sin(double(i));
             particles_to_grid(box(), particles, nullptr, nodes);
-            EXPECT_NEAR(sum_of(nodes.mass_energy) / total_energy(particles), 1.0, 1e-13);
+            EXPECT_NEAR(exact_sum(nodes.mass_energy) / total_energy(particles), 1.0, 1e-13);
             particles_to_grid(box(), particles, &gradient_of, nodes);
-            EXPECT_NEAR(sum_of(nodes.mass_energy) / total_energy(particles), 1.0, 1e-13)
+            EXPECT_NEAR(exact_sum(nodes.mass_energy) / total_energy(particles), 1.0, 1e-13)
                 << "whatever the gradients";
         }
 }
@@ -135,7 +135,7 @@ TEST(Ghosts, folding_moves_what_lies_beyond_a_wall_to_its_mirror_and_keeps_the_s
     EXPECT_EQ(field[grid.index(1, 2, 1)], 1.0);
     EXPECT_EQ(field[grid.index(1, 1, 1)], 2.0);
     EXPECT_EQ(field[grid.index(4, 3, 2)], 3.0);
-    EXPECT_EQ(sum_of(field), 6.0);
+    EXPECT_EQ(exact_sum(field), 6.0);
 
     Boundary fixed;
     fixed[0] = {FaceCondition::Kind::fixed_temperature, 300.0, 0.0, 0.0};

@@ -40,9 +40,9 @@ struct EllipsoidalPool {
     }
 };
 
-class PoolOfAnyPlaceAndDirection : public testing::TestWithParam<double> {};
-
 } // namespace
+
+class PoolOfAnyPlaceAndDirection : public testing::TestWithParam<double> {};
 
 TEST_P(PoolOfAnyPlaceAndDirection, is_measured_within_a_fifth_of_a_cell) {
     double worst = 0.0;

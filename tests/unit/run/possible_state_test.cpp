@@ -13,17 +13,17 @@ namespace {
 
 using test::steel_block;
 
-constexpr double end = 1.0; // s, of a step's target: the largest step is taken
+constexpr double target_time = 1.0; // s, of a step's target: the largest step is taken
 
 /// What stops a block one of whose particles is given this energy (J/kg) after three steps.
 std::string stop_of_poisoned(std::int64_t particle, double energy) {
     Simulation s = steel_block();
     for (int n = 0; n < 3; ++n)
-        advance(s, end);
+        advance(s, target_time);
     s.particles.specific_energy[s.particles.layout.place[particle]] = energy;
     try {
         for (int n = 0; n < 2; ++n) // the nodes hold what was gathered before: the step after sees it
-            advance(s, end);
+            advance(s, target_time);
     } catch (const SolutionError& error) {
         EXPECT_LE(s.step, 5);
         return error.what();

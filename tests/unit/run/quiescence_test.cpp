@@ -77,7 +77,7 @@ void expect_same_state(const Simulation& a, const Simulation& b) {
     EXPECT_EQ(a.quiescence.bricks.awake, b.quiescence.bricks.awake);
 }
 
-double largest_difference(const Field& a, const Field& b) {
+double largest_gap(const Field& a, const Field& b) {
     double most = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i)
         most = std::max(most, std::abs(a[i] - b[i]));
@@ -176,7 +176,7 @@ TEST(Quiescence, sleep_changes_temperatures_by_about_the_tolerance) {
             ASSERT_EQ(s.time, off.time);
             EXPECT_GT(asleep(s), 0);
             EXPECT_GT(s.peak_temperature, start_temperature + 100.0);
-            EXPECT_LT(largest_difference(s.nodes.temperature, off.nodes.temperature), 10.0 * tolerance);
+            EXPECT_LT(largest_gap(s.nodes.temperature, off.nodes.temperature), 10.0 * tolerance);
         }
 }
 
@@ -283,7 +283,7 @@ TEST(Quiescence, a_face_that_is_set_to_another_temperature_wakes_what_is_near) {
     EXPECT_LT(s.ledger.conducted_out, 0.0);
     EXPECT_LT(std::abs(s.ledger.relative_residual()), energy_closes);
     EXPECT_NEAR(s.ledger.conducted_out, off.ledger.conducted_out, 1e-6 * std::abs(off.ledger.conducted_out));
-    EXPECT_LT(largest_difference(s.nodes.temperature, off.nodes.temperature), 1e-4);
+    EXPECT_LT(largest_gap(s.nodes.temperature, off.nodes.temperature), 1e-4);
 }
 
 TEST(Quiescence, losses_that_are_switched_on_wake_the_surface) {
@@ -329,7 +329,7 @@ TEST(Quiescence, particles_that_are_added_wake_what_they_touch) {
     }
     EXPECT_GT(asleep(s), 0);
     EXPECT_LT(std::abs(s.ledger.relative_residual()), energy_closes);
-    EXPECT_LT(largest_difference(s.nodes.temperature, off.nodes.temperature), 1e-4);
+    EXPECT_LT(largest_gap(s.nodes.temperature, off.nodes.temperature), 1e-4);
     Simulation again = resumed(s);
     run(s, 3);
     run(again, 3);

@@ -91,8 +91,6 @@ class EditedPrompt : public Prompt {
         pipe_.wake();
     }
 
-    bool edits() const override { return true; }
-
   private:
     static EditedPrompt& of(EditLine* editor) {
         void* prompt = nullptr;

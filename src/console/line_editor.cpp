@@ -80,8 +80,4 @@ void LineEditor::print(const std::string& text) {
     prompt_->print(text);
 }
 
-bool LineEditor::edits() const {
-    return prompt_->edits();
-}
-
 } // namespace meltscope

@@ -44,8 +44,6 @@ class PlainPrompt : public Prompt {
             ask();
     }
 
-    bool edits() const override { return false; }
-
   private:
     /// Needs the mutex.
     void ask() {

@@ -15,7 +15,6 @@ class Prompt {
   public:
     virtual ~Prompt() = default;
     virtual void print(const std::string& text) = 0;
-    virtual bool edits() const = 0;
 };
 
 /// Reads lines as they come: from a pipe, a file or a terminal that cannot be edited.

@@ -148,10 +148,6 @@ double Section::number(std::string_view key, const Quantity& quantity) const {
     return as_number(require(key), joined_key(path_, key), quantity);
 }
 
-std::optional<double> Section::maybe_number(std::string_view key, const Quantity& quantity) const {
-    return has(key) ? std::optional(number(key, quantity)) : std::nullopt;
-}
-
 double Section::in_range(std::string_view key, const Quantity& quantity, double low, double high,
                          std::optional<double> fallback) const {
     if (fallback && !has(key)) {

@@ -52,7 +52,6 @@ class Section {
     const toml::node& require(std::string_view key) const;
 
     double number(std::string_view key, const Quantity& quantity) const;
-    std::optional<double> maybe_number(std::string_view key, const Quantity& quantity) const;
     /// A number in [low, high] or (low, high]; an open lower end is written with `above`.
     double in_range(std::string_view key, const Quantity& quantity, double low, double high,
                     std::optional<double> fallback = {}) const;

@@ -41,9 +41,6 @@ class LineEditor {
     /// Prints whole lines above the prompt. From any thread; does not wait for a terminal that is edited.
     void print(const std::string& text);
 
-    /// Whether lines are edited: both standard input and output are a terminal that is not dumb.
-    bool edits() const;
-
   private:
     std::unique_ptr<Prompt> prompt_;
 };

@@ -14,8 +14,8 @@ struct CacheLineAllocator {
 
     CacheLineAllocator() = default;
     template <class U>
-    CacheLineAllocator(const CacheLineAllocator<U>&) { // NOLINT(google-explicit-constructor): allocators convert
-    }
+    // NOLINTNEXTLINE(google-explicit-constructor): allocators convert
+    CacheLineAllocator(const CacheLineAllocator<U>&) {}
 
     T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), alignment)); }
     void deallocate(T* pointer, std::size_t) { ::operator delete(pointer, alignment); }

@@ -47,9 +47,9 @@ vtkStandardNewMacro(QuietWindow);
 } // namespace
 
 void capture_vtk_errors() {
-    if (QuietWindow::SafeDownCast(vtkOutputWindow::GetInstance()) == nullptr) {
-        vtkOutputWindow::SetInstance(vtkSmartPointer<QuietWindow>::New());
-    }
+    // Threads that read and draw at once must not each put one in the place of the other's.
+    static std::once_flag once;
+    std::call_once(once, [] { vtkOutputWindow::SetInstance(vtkSmartPointer<QuietWindow>::New()); });
 }
 
 std::string take_vtk_error() {

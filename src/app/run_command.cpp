@@ -50,7 +50,7 @@ std::optional<double> time_of(const std::string& text) {
     } catch (const std::logic_error&) {
     }
     try {
-        return Units().to_si(text, quantity::time);
+        return to_si(text, quantity::time);
     } catch (const UnitError& error) {
         throw UsageError(fmt::format("--until {}: {}", text, error.what()));
     }

@@ -132,7 +132,7 @@ double Arguments::quantity(const std::string& what, const Quantity& quantity,
     if (has_unit)
         text = fmt::format("{} {}", text, unit);
     try {
-        return units_->to_si(text, quantity);
+        return to_si(text, quantity);
     } catch (const UnitError& error) {
         throw CommandError(fmt::format("{}: {}", what, error.what()));
     }

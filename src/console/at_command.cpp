@@ -33,7 +33,7 @@ std::string rehearse(Call& call, const Command& command, const std::string& word
     };
     std::string obstacle;
     try {
-        Arguments arguments(split_words(words), console.units);
+        Arguments arguments(split_words(words));
         Call trial{console, run, arguments, {}, false, true};
         command.handler(trial);
     } catch (const NotNow& error) {

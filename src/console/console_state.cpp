@@ -78,7 +78,7 @@ void take_up(ConsoleState& console, Run& run, const JournalEntry& entry) {
         if (!words.empty() && words[0] == "adopt")
             adopt_picture_settings(console, words);
         if (!words.empty() && (words[0] == "at" || words[0] == "land" || picture_setting)) {
-            Arguments arguments({words.begin() + 1, words.end()}, console.units);
+            Arguments arguments({words.begin() + 1, words.end()});
             Call call{console, run, arguments, {}, false};
             find_command(words[0]).handler(call);
         }
@@ -98,7 +98,7 @@ Reply carry_out(ConsoleState& console, Run& run, std::string_view line, bool wai
         if (words.empty())
             return reply;
         const Command& command = find_command(words[0]);
-        Arguments arguments({words.begin() + 1, words.end()}, console.units);
+        Arguments arguments({words.begin() + 1, words.end()});
         Call call{console, run, arguments, {}, false};
         reply.text = command.handler(call);
         reply.starts = call.starts;

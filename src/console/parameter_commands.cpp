@@ -72,7 +72,7 @@ std::string set_of_laser(Call& call, const std::string& what) {
 std::string switch_laser(Call& call, const char* value) {
     const std::string name = laser_prefix(call) + "on";
     call.arguments.done();
-    Arguments given({value}, call.console.units);
+    Arguments given({value});
     Call of_set{call.console, call.run, given, {}, false, call.rehearsal};
     const std::string text =
         set_parameter(of_set, find_parameter(call.run.simulation.parameters.lasers, name));

@@ -107,8 +107,7 @@ std::string do_run(Call& call) {
     const std::string first = arguments.word("how far");
     if (arguments.empty() && is_count(first))
         return go_steps(call, std::stoll(first));
-    Arguments again(split_words(arguments.empty() ? first : first + " " + arguments.rest()),
-                    call.console.units);
+    Arguments again(split_words(arguments.empty() ? first : first + " " + arguments.rest()));
     const double span = again.quantity("how long", quantity::time);
     again.done();
     require_positive(span, "how long to run", "s");
@@ -131,7 +130,7 @@ std::string do_until(Call& call) {
     const bool time = !step && (target.starts_with("t=") || target.starts_with("t ")) && drop("t");
     target.erase(0, target.find_first_not_of(' '));
     drop("=");
-    Arguments arguments(split_words(target), call.console.units);
+    Arguments arguments(split_words(target));
     if (!step) {
         const double t = arguments.quantity(time ? "t" : "the time", quantity::time);
         arguments.done();

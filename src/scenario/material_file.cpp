@@ -85,8 +85,7 @@ Material read_material_section(const Section& section, const std::string& name) 
 }
 
 Material read_material(const std::filesystem::path& file) {
-    const Units units;
-    const ReadContext context{units, file.string(), file.parent_path()};
+    const ReadContext context{file.string(), file.parent_path()};
     const toml::table tree = parse_toml(read_text_file(file, context.name), context.name);
     return read_material_section(Section(context, tree, ""), file.stem().string());
 }

@@ -275,8 +275,7 @@ Scenario read_tree(const Section& root, const std::vector<std::string>& material
 
 Scenario read_scenario_text(std::string_view text, const std::vector<std::string>& overrides,
                             const std::string& name, const std::filesystem::path& folder) {
-    const Units units;
-    const ReadContext context{units, name, folder};
+    const ReadContext context{name, folder};
     toml::table tree = parse_toml(text, name);
     // Overrides of materials come after the files are read, so that they reach into them.
     std::vector<Override> of_materials;

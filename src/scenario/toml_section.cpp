@@ -125,7 +125,7 @@ double Section::as_number(const toml::node& node, const std::string& key, const 
         value = static_cast<double>(whole->get());
     } else if (const auto* text = node.as_string()) {
         try {
-            return context_->units.to_si(text->get(), quantity);
+            return to_si(text->get(), quantity);
         } catch (const UnitError& error) {
             fail_at(*context_, node, key, error.what());
         }

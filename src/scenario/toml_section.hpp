@@ -21,7 +21,6 @@ inline constexpr double no_limit = std::numeric_limits<double>::max();
 
 /// What the readers of one scenario share.
 struct ReadContext {
-    const Units& units;
     std::string name;             ///< of the file, for messages without a place
     std::filesystem::path folder; ///< where relative file names start
 };

@@ -5,6 +5,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <memory>
+#include <mutex>
+#include <string>
 
 namespace meltscope {
 namespace {
@@ -58,11 +61,11 @@ std::string shown(std::string_view text) {
     return text.size() > 60 ? result + "..." : result;
 }
 
-} // namespace
-
-struct Units::System {
+/// The database of units. Reading it takes milliseconds and UDUNITS-2 (2.2.28) keeps 3 kB of it for good even
+/// when it is given back, so there is one for the whole program.
+struct Database {
     ut_system* system = nullptr;
-    System() {
+    Database() {
         ut_set_error_message_handler(ut_ignore); // the library would write to stderr
         system = ut_read_xml(nullptr);
         if (system == nullptr) {
@@ -72,21 +75,21 @@ struct Units::System {
         const UnitPointer degree = parse("degree");
         ut_map_symbol_to_unit("deg", UT_ASCII, degree.get()); // the database lacks the common short form
     }
-    ~System() { ut_free_system(system); }
-    System(const System&) = delete;
-    System& operator=(const System&) = delete;
+    ~Database() { ut_free_system(system); }
+    Database(const Database&) = delete;
+    Database& operator=(const Database&) = delete;
 
     UnitPointer parse(const std::string& text) const {
         return UnitPointer(ut_parse(system, text.c_str(), UT_UTF8));
     }
 };
 
-Units::Units() : system_(std::make_unique<System>()) {}
-Units::~Units() = default;
-Units::Units(Units&&) noexcept = default;
-Units& Units::operator=(Units&&) noexcept = default;
+} // namespace
 
-double Units::to_si(std::string_view text, const Quantity& quantity) const {
+double to_si(std::string_view text, const Quantity& quantity) {
+    static std::mutex one_at_a_time; // UDUNITS-2's parser keeps its state in global variables
+    const std::lock_guard lock(one_at_a_time);
+    static const Database database;
     const std::string_view all = without_blanks(text);
     double value = 0.0;
     const char* begin = all.data();
@@ -117,12 +120,12 @@ double Units::to_si(std::string_view text, const Quantity& quantity) const {
     const bool slip = unit_text.size() > 100 ||
                       std::string_view("0123456789.+-").find(unit_text[0]) != std::string_view::npos ||
                       unit_text.find_first_of("@:") != std::string::npos;
-    const UnitPointer given = slip ? nullptr : system_->parse(unit_text);
+    const UnitPointer given = slip ? nullptr : database.parse(unit_text);
     if (!given) {
         throw UnitError(fmt::format("\"{}\" is not a unit; {} is written as {}", shown(unit_text),
                                     with_article(quantity), example(quantity)));
     }
-    const UnitPointer wanted = system_->parse(quantity.unit);
+    const UnitPointer wanted = database.parse(quantity.unit);
     const ConverterPointer converter(ut_are_convertible(given.get(), wanted.get()) != 0
                                          ? ut_get_converter(given.get(), wanted.get())
                                          : nullptr);

@@ -40,8 +40,7 @@ bool is_count(std::string_view word);
 /// that is missing or wrong.
 class Arguments {
   public:
-    Arguments(std::vector<std::string> words, const Units& units)
-        : words_(std::move(words)), units_(&units) {}
+    explicit Arguments(std::vector<std::string> words) : words_(std::move(words)) {}
 
     bool empty() const { return next_ == words_.size(); }
     /// The next word without taking it; empty at the end.
@@ -67,7 +66,6 @@ class Arguments {
   private:
     std::vector<std::string> words_;
     std::size_t next_ = 0;
-    const Units* units_;
 };
 
 /// Throws CommandError unless low <= value <= high; `unit` is for the message.

@@ -3,7 +3,6 @@
 #include "meltscope/console/journal.hpp"
 #include "meltscope/run/powder_layer.hpp"
 #include "meltscope/run/run_loop.hpp"
-#include "meltscope/scenario/units.hpp"
 
 #include <array>
 #include <filesystem>
@@ -66,7 +65,6 @@ struct Goal {
 /// All that a console knows besides the run. Belongs to the thread of the solver.
 struct ConsoleState {
     ConsoleHost host;
-    Units units;
     RenderSettings render;
 
     bool running = true;

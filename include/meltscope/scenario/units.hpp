@@ -1,8 +1,6 @@
 #pragma once
 
-#include <memory>
 #include <stdexcept>
-#include <string>
 #include <string_view>
 
 namespace meltscope {
@@ -35,24 +33,10 @@ struct UnitError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Converts text such as "85 um" or "25 degC" to SI by UDUNITS-2. Making one reads the unit database, which
-/// takes milliseconds, so make one and pass it on. Not thread safe: one thread at a time.
-class Units {
-  public:
-    /// Throws UnitError if the unit database of UDUNITS-2 cannot be read.
-    Units();
-    ~Units();
-    Units(Units&&) noexcept;
-    Units& operator=(Units&&) noexcept;
-
-    /// The SI value of "NUMBER UNIT". Throws UnitError if the text is no finite number with a unit, if the
-    /// unit is unknown or if it does not measure `quantity`. A number alone is taken only where the quantity
-    /// has no unit.
-    double to_si(std::string_view text, const Quantity& quantity) const;
-
-  private:
-    struct System;
-    std::unique_ptr<System> system_;
-};
+/// The SI value of text such as "85 um" or "25 degC", by UDUNITS-2. Throws UnitError if the text is no finite
+/// number with a unit, if the unit is unknown, if it does not measure `quantity` or if UDUNITS-2 has no
+/// database of units. A number alone is taken only where the quantity has no unit. One thread at a time
+/// converts, others wait.
+double to_si(std::string_view text, const Quantity& quantity);
 
 } // namespace meltscope

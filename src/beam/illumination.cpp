@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace meltscope {
 namespace {
@@ -19,8 +21,8 @@ constexpr double rays_in_cell = 2.0;
 /// in different ways, and the map's rays pass up to a quarter cell beside the element.
 constexpr double lit_tolerance = 1.0;
 
-/// Elements that a thread looks at before it takes the next lot.
-constexpr std::int64_t elements_in_chunk = 2048;
+/// So few elements one thread has looked at before others would be awake.
+constexpr std::int64_t few = 4096;
 
 /// Index of the map cell that holds a point, or -1 outside the map.
 std::int64_t map_cell(const LightMap& map, const Vec3& point) {
@@ -32,28 +34,30 @@ std::int64_t map_cell(const LightMap& map, const Vec3& point) {
     return std::int64_t(a) + map.count_u * std::int64_t(b);
 }
 
-/// Row of the map's cells that holds a point, or the nearest.
-std::int64_t map_row(const LightMap& map, const Vec3& point) {
-    const double row = std::floor((point - map.corner).dot(map.v) / map.spacing + 0.5);
-    return std::int64_t(std::clamp(row, 0.0, double(map.count_v - 1)));
-}
-
-/// Sorts the lit elements by rows, so that a beam need not look at all of them.
-void sort_into_rows(const SurfaceElements& elements, LightMap& map) {
-    map.row_start.assign(map.count_v + 1, 0);
-    std::vector<std::int64_t> row(elements.count(), -1);
+/// Sorts the lit elements by the map's cells, so that a beam looks at those near it, in the order in which
+/// they lie.
+void sort_into_cells(const SurfaceElements& elements, LightMap& map) {
+    map.cell_start.assign(map.depth.size() + 1, 0);
+    std::vector<std::int64_t> cell(elements.count(), -1);
     for (std::int64_t s = 0; s < elements.count(); ++s)
         if (map.lit[s]) {
-            row[s] = map_row(map, elements.point[s]);
-            ++map.row_start[row[s] + 1];
+            cell[s] = map_cell(map, elements.point[s]);
+            ++map.cell_start[cell[s] + 1];
         }
-    for (std::int64_t b = 0; b < map.count_v; ++b)
-        map.row_start[b + 1] += map.row_start[b];
-    map.lit_in_rows.resize(map.row_start.back());
-    std::vector<std::int64_t> next(map.row_start.begin(), map.row_start.end() - 1);
+    std::partial_sum(map.cell_start.begin(), map.cell_start.end(), map.cell_start.begin());
+    map.lit_in_cells.resize(map.cell_start.back());
+    std::vector<std::int64_t> next(map.cell_start.begin(), map.cell_start.end() - 1);
     for (std::int64_t s = 0; s < elements.count(); ++s)
         if (map.lit[s])
-            map.lit_in_rows[next[row[s]]++] = s;
+            map.lit_in_cells[next[cell[s]]++] = s;
+}
+
+/// The map's cells along one axis that a stretch of it reaches: first and end, at least one.
+std::pair<std::int64_t, std::int64_t> cells_within(const LightMap& map, const Vec3& axis, std::int64_t count,
+                                                   const Vec3& centre, double reach) {
+    const double at = (centre - map.corner).dot(axis) / map.spacing + 0.5, wide = reach / map.spacing;
+    const auto inside = [&](double cell) { return std::int64_t(std::clamp(cell, 0.0, double(count - 1))); };
+    return {inside(std::floor(at - wide)), inside(std::floor(at + wide)) + 1};
 }
 
 } // namespace
@@ -97,7 +101,7 @@ LightMap make_light_map(const Grid& grid, const FreeSurface& surface, const Vec3
             cell >= 0 && elements.normal[s].dot(map.direction) < 0.0 &&
             (elements.point[s] - map.corner).dot(map.direction) <= map.depth[cell] + lit_tolerance * grid.dx;
     }
-    sort_into_rows(elements, map);
+    sort_into_cells(elements, map);
     return map;
 }
 
@@ -114,31 +118,37 @@ Absorption absorb(const LightMap& map, const Laser& laser, const Vec3& position,
                                   [&](const Vec3& aside) { return flux(shape, 1.0, aside.squaredNorm()); });
     result.missed = power * (1.0 - share);
 
-    const Vec3 aside = (std::sqrt(shape.cutoff_squared) + map.spacing) * map.v;
-    const std::int64_t first = map.row_start[map_row(map, position - aside)];
-    const std::int64_t end = map.row_start[map_row(map, position + aside) + 1];
-    // A list and a sum a chunk, then these in their order: the same for any number of threads.
-    std::vector<ElementHeat> of_chunk((end - first + elements_in_chunk - 1) / elements_in_chunk);
-    std::vector<double> sum_of_chunk(of_chunk.size(), 0.0);
-#pragma omp parallel for schedule(dynamic, 1) if (of_chunk.size() > 2)
-    for (std::size_t c = 0; c < of_chunk.size(); ++c) {
-        const std::int64_t begin = first + std::int64_t(c) * elements_in_chunk;
-        for (std::int64_t n = begin; n < std::min(end, begin + elements_in_chunk); ++n) {
-            const std::int64_t s = map.lit_in_rows[n];
+    const double reach = std::sqrt(shape.cutoff_squared);
+    const auto [first_u, end_u] = cells_within(map, map.u, map.count_u, position, reach);
+    const auto [first_v, end_v] = cells_within(map, map.v, map.count_v, position, reach);
+    // A list and a sum a row of cells, then these in their order: the same for any number of threads.
+    std::vector<ElementHeat> of_row(end_v - first_v);
+    std::vector<double> sum_of_row(of_row.size(), 0.0);
+    const auto lit_in_row = [&](std::int64_t row) {
+        return std::pair(map.cell_start[first_u + map.count_u * row],
+                         map.cell_start[end_u - 1 + map.count_u * row + 1]);
+    };
+#pragma omp parallel for schedule(dynamic,                                                                   \
+                                  1) if (lit_in_row(end_v - 1).second - lit_in_row(first_v).first > few)
+    for (std::int64_t row = first_v; row < end_v; ++row) {
+        ElementHeat& heat = of_row[row - first_v];
+        const auto [first, end] = lit_in_row(row);
+        for (std::int64_t n = first; n < end; ++n) {
+            const std::int64_t s = map.lit_in_cells[n];
             const double squared = axis_distance_squared(elements.point[s], position, map.direction);
             if (!(squared < shape.cutoff_squared))
                 continue;
             const double cosine = -elements.normal[s].dot(map.direction);
             const double watt = laser.absorptivity * flux(shape, power, squared) * cosine * elements.area[s];
-            of_chunk[c].element.push_back(s);
-            of_chunk[c].amount.push_back(watt);
-            sum_of_chunk[c] += watt;
+            heat.element.push_back(s);
+            heat.amount.push_back(watt);
+            sum_of_row[row - first_v] += watt;
         }
     }
     double sum = 0.0;
-    for (std::size_t c = 0; c < of_chunk.size(); ++c) {
-        sum += sum_of_chunk[c];
-        const ElementHeat& some = of_chunk[c];
+    for (std::size_t row = 0; row < of_row.size(); ++row) {
+        sum += sum_of_row[row];
+        const ElementHeat& some = of_row[row];
         absorbed.element.insert(absorbed.element.end(), some.element.begin(), some.element.end());
         absorbed.amount.insert(absorbed.amount.end(), some.amount.begin(), some.amount.end());
     }

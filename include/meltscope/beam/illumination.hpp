@@ -18,8 +18,8 @@ struct LightMap {
     std::vector<double>
         depth; ///< m along the beam from the corner's plane to the first interface; infinite: none
     std::vector<char> lit; ///< of each surface element: nothing lies between it and the source
-    std::vector<std::int64_t> lit_in_rows; ///< the lit elements, row of cells (along u) after row
-    std::vector<std::int64_t> row_start;   ///< first entry of each row, count_v of them, and the end
+    std::vector<std::int64_t> lit_in_cells; ///< the lit elements, cell after cell in the order of `depth`
+    std::vector<std::int64_t> cell_start;   ///< first entry of each cell, and the end
 };
 
 /// Traces a ray through the level set for every half cell across the beam.

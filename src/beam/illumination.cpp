@@ -52,9 +52,12 @@ void sort_into_cells(const SurfaceElements& elements, LightMap& map) {
             map.lit_in_cells[next[cell[s]]++] = s;
 }
 
-/// The map's cells along one axis that a stretch of it reaches: first and end, at least one.
-std::pair<std::int64_t, std::int64_t> cells_within(const LightMap& map, const Vec3& axis, std::int64_t count,
-                                                   const Vec3& centre, double reach) {
+/// The map's cells along one axis that a stretch of it reaches, at least one.
+struct CellRange {
+    std::int64_t first, end;
+};
+CellRange cells_within(const LightMap& map, const Vec3& axis, std::int64_t count, const Vec3& centre,
+                       double reach) {
     const double at = (centre - map.corner).dot(axis) / map.spacing + 0.5, wide = reach / map.spacing;
     const auto inside = [&](double cell) { return std::int64_t(std::clamp(cell, 0.0, double(count - 1))); };
     return {inside(std::floor(at - wide)), inside(std::floor(at + wide)) + 1};
@@ -119,21 +122,21 @@ Absorption absorb(const LightMap& map, const Laser& laser, const Vec3& position,
     result.missed = power * (1.0 - share);
 
     const double reach = std::sqrt(shape.cutoff_squared);
-    const auto [first_u, end_u] = cells_within(map, map.u, map.count_u, position, reach);
-    const auto [first_v, end_v] = cells_within(map, map.v, map.count_v, position, reach);
-    // A list and a sum a row of cells, then these in their order: the same for any number of threads.
-    std::vector<ElementHeat> of_row(end_v - first_v);
-    std::vector<double> sum_of_row(of_row.size(), 0.0);
-    const auto lit_in_row = [&](std::int64_t row) {
-        return std::pair(map.cell_start[first_u + map.count_u * row],
-                         map.cell_start[end_u - 1 + map.count_u * row + 1]);
+    const CellRange along_u = cells_within(map, map.u, map.count_u, position, reach);
+    const CellRange along_v = cells_within(map, map.v, map.count_v, position, reach);
+    const auto first_lit = [&](std::int64_t row) {
+        return map.cell_start[along_u.first + map.count_u * row];
     };
-#pragma omp parallel for schedule(dynamic,                                                                   \
-                                  1) if (lit_in_row(end_v - 1).second - lit_in_row(first_v).first > few)
-    for (std::int64_t row = first_v; row < end_v; ++row) {
-        ElementHeat& heat = of_row[row - first_v];
-        const auto [first, end] = lit_in_row(row);
-        for (std::int64_t n = first; n < end; ++n) {
+    const auto end_lit = [&](std::int64_t row) { return map.cell_start[along_u.end + map.count_u * row]; };
+    const bool many = end_lit(along_v.end - 1) - first_lit(along_v.first) > few;
+    // A list and a sum a row of cells, then these in their order: the same for any number of threads.
+    std::vector<ElementHeat> of_row(along_v.end - along_v.first);
+    std::vector<double> sum_of_row(of_row.size(), 0.0);
+#pragma omp parallel for schedule(dynamic, 1) if (many)
+    for (std::int64_t row = along_v.first; row < along_v.end; ++row) {
+        ElementHeat heat; // put into the list when whole: threads would share its neighbours' cache lines
+        double sum = 0.0;
+        for (std::int64_t n = first_lit(row); n < end_lit(row); ++n) {
             const std::int64_t s = map.lit_in_cells[n];
             const double squared = axis_distance_squared(elements.point[s], position, map.direction);
             if (!(squared < shape.cutoff_squared))
@@ -142,8 +145,10 @@ Absorption absorb(const LightMap& map, const Laser& laser, const Vec3& position,
             const double watt = laser.absorptivity * flux(shape, power, squared) * cosine * elements.area[s];
             heat.element.push_back(s);
             heat.amount.push_back(watt);
-            sum_of_row[row - first_v] += watt;
+            sum += watt;
         }
+        of_row[row - along_v.first] = std::move(heat);
+        sum_of_row[row - along_v.first] = sum;
     }
     double sum = 0.0;
     for (std::size_t row = 0; row < of_row.size(); ++row) {

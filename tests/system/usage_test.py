@@ -64,8 +64,8 @@ class Refusals(ProgramTest):
     def test_400_million_particles_are_refused_with_an_estimate_before_memory_is_taken(self):
         if os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") > 50e9:
             self.skipTest("this machine can hold them")
-        if "ASAN_OPTIONS" in os.environ:
-            self.skipTest("the address sanitizer reserves more than any limit for itself")
+        if "ASAN_OPTIONS" in os.environ or "TSAN_OPTIONS" in os.environ:
+            self.skipTest("the sanitizers reserve more than any limit for themselves")
         gigabytes = 4  # what the arrays need would break this limit, and the program would end otherwise
         refused = meltscope("bench", "--scene", "block", "--particles", "400000000", preexec_fn=lambda:
                             resource.setrlimit(resource.RLIMIT_AS, (gigabytes << 30, gigabytes << 30)))

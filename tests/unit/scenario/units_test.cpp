@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+#include <vector>
+
 namespace meltscope {
 namespace {
 
@@ -48,20 +52,17 @@ TEST(units, angles_and_ratios_have_their_own_units) {
 
 TEST(units, a_unit_of_something_else_is_refused) {
     EXPECT_EQ(refusal("5 m", quantity::power), "\"5 m\" is not a power; it is written as \"1.5 W\"");
-    EXPECT_EQ(refusal("5 W", quantity::angle),
-              "\"5 W\" is not an angle; it is written as \"1.5 rad\"");
+    EXPECT_EQ(refusal("5 W", quantity::angle), "\"5 W\" is not an angle; it is written as \"1.5 rad\"");
     EXPECT_NE(refusal("3 Hz", quantity::time), ""); // a reciprocal is not meant
     EXPECT_NE(refusal("3 seconds since 1999-01-01", quantity::time), "");
 }
 
 TEST(units, what_is_no_quantity_is_refused_with_the_reason) {
-    EXPECT_EQ(refusal("5 wats", quantity::power),
-              "\"wats\" is not a unit; a power is written as \"1.5 W\"");
+    EXPECT_EQ(refusal("5 wats", quantity::power), "\"wats\" is not a unit; a power is written as \"1.5 W\"");
     EXPECT_EQ(refusal("5", quantity::length),
               "\"5\" has no unit; a length is a number in m or text such as \"1.5 m\"");
     EXPECT_NE(refusal("", quantity::length).find("does not begin with a number"), std::string::npos);
-    EXPECT_NE(refusal("fast", quantity::speed).find("does not begin with a number"),
-              std::string::npos);
+    EXPECT_NE(refusal("fast", quantity::speed).find("does not begin with a number"), std::string::npos);
     EXPECT_NE(refusal("1e999 m", quantity::length).find("does not fit"), std::string::npos);
     EXPECT_NE(refusal("1e308 km", quantity::length).find("does not fit"), std::string::npos);
     EXPECT_NE(refusal("nan m", quantity::length).find("not finite"), std::string::npos);
@@ -70,6 +71,20 @@ TEST(units, what_is_no_quantity_is_refused_with_the_reason) {
     EXPECT_NE(refusal("5 2 mm", quantity::length), "");
     EXPECT_NE(refusal("5 " + std::string(100000, 'm'), quantity::length), "");
     EXPECT_NE(refusal("5 " + std::string(90, '('), quantity::length), "");
+}
+
+TEST(units, threads_convert_beside_each_other) {
+    std::atomic<int> wrong = 0;
+    const auto convert = [&](const std::string& text, const Quantity& quantity, double value) {
+        for (int n = 0; n < 2000; ++n)
+            wrong += to_si(text, quantity) != value;
+    };
+    std::vector<std::jthread> threads;
+    threads.emplace_back(convert, "85 um", quantity::length, 85e-6);
+    threads.emplace_back(convert, "800 mm/s", quantity::speed, 0.8);
+    threads.emplace_back(convert, "295.7 J/g", quantity::specific_energy, 295700.0);
+    threads.clear();
+    EXPECT_EQ(wrong, 0);
 }
 
 } // namespace

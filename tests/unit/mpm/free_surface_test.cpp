@@ -1,10 +1,12 @@
 #include "meltscope/mpm/free_surface.hpp"
 
 #include "meltscope/beam/illumination.hpp"
+#include "meltscope/beam/profile.hpp"
 #include "reference/driver.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <numeric>
 
@@ -201,6 +203,30 @@ TEST(Illumination, tilted_plate_absorbs_the_whole_beam_with_a_scale_near_one) {
             centre += power.amount[n] / a.absorbed * body.surface.elements.point[power.element[n]];
         EXPECT_NEAR(centre[0], 20.0, 0.3);
         EXPECT_NEAR(centre[1], 20.0, 0.3);
+    }
+}
+
+TEST(Illumination, every_lit_element_that_the_beam_reaches_absorbs_and_no_other) {
+    const Body body = tilted_plate(20.0);
+    const Laser laser = beam(3.0);
+    const double cutoff = cutoff_radius(laser);
+    for (const Vec3& direction : {Vec3(0, 0, -1), Vec3(0.3, -0.2, -1).normalized()}) {
+        const LightMap map = make_light_map(body.grid, body.surface, direction);
+        for (const Vec3& position :
+             {Vec3(20, 20, 14), Vec3(13.3, 24.8, 12), Vec3(1, 39, 8), Vec3(41, 20, 22)}) {
+            std::vector<std::int64_t> reached;
+            for (std::int64_t s = 0; s < body.surface.elements.count(); ++s)
+                if (map.lit[s] && direction.cross(body.surface.elements.point[s] - position).norm() < cutoff)
+                    reached.push_back(s);
+            ElementHeat power;
+            absorb(map, laser, position, laser.power, body.surface.elements, power);
+            std::sort(power.element.begin(), power.element.end());
+            EXPECT_GT(reached.size(), 20u);
+            EXPECT_TRUE(
+                std::equal(reached.begin(), reached.end(), power.element.begin(), power.element.end()))
+                << "beam at " << position.transpose() << ": " << power.element.size() << " of "
+                << reached.size();
+        }
     }
 }
 
